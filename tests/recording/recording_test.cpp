@@ -179,6 +179,15 @@ TEST(Recording, ATemperatureWithoutAUnitIsNoTimeWhereThereIsOne) {
     EXPECT_EQ(dated.columns[0].use, ColumnUse::output) << name;
     EXPECT_EQ(dated.columns[1].use, ColumnUse::time);
     const RecordingSurvey elapsed = survey(rows(fmt::format("{},Elapsed Time (s),q", name), 50, [](int k) {
+TEST(Recording, UnitsThatMayBeSomethingElseAreSaid) {
+  const RecordingSurvey s = survey(rows("t_s,p_s,acc_x[g],T (in),theta_rad", 100, [](int k) {
+    return fmt::format("{},{},{},{},{}", 0.1 * k, std::sin(0.1 * k), std::sin(0.7 * k), std::cos(0.4 * k), std::cos(1.3 * k));
+  }));
+  EXPECT_THAT(s.remarks, testing::UnorderedElementsAre("column 'acc_x[g]': g is read as gram, not as 9.81 m/s^2",
+                                                       "column 'T (in)': (in) is read as inch",
+                                                       HasSubstr("units read from the last letter of names: 'p_s' in s;")));
+}
+
       return fmt::format("{},{},{}", 20.0 + 0.1 * k + (k % 3 == 0 ? 0.3 : 0.0), 0.5 * k, std::sin(0.3 * k));
     }));
     EXPECT_EQ(elapsed.columns[1].use, ColumnUse::time) << name;

@@ -47,6 +47,7 @@ class ColumnClassifier {
     make_names_usable();
     find_rates();
     name_unknown_units();
+    name_doubtful_units();
     fill_parts();
     return std::move(out_);
   }
@@ -75,6 +76,7 @@ class ColumnClassifier {
       out_.remarks.push_back(fmt::format("column '{}' holds dates: read as seconds since {}{}", s.header,
                                          column.from_midnight ? "the midnight before " : "", shown(column.first_date)));
     not_understood_.push_back(shown(header.not_understood, longest_header));
+    of_one_letter_.push_back(header.of_one_letter);
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
@@ -342,6 +344,28 @@ class ColumnClassifier {
       static_cast<void>(parse_unit(unit));
     } catch (const InputError& error) {
       const std::string words = error.what();
+  /// Units that may be something else: a subscript (V is none), the acceleration of gravity, an inlet.
+  void name_doubtful_units() {
+    std::vector<std::string> of_one_letter;
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      const ColumnSurvey& c = out_.columns[i];
+      const bool signal = c.use == ColumnUse::input || c.use == ColumnUse::output || c.use == ColumnUse::rate;
+      if (!signal) continue;
+      if (of_one_letter_[i] && c.unit != "V") of_one_letter.push_back(fmt::format("'{}' in {}", c.header, c.unit));
+      const bool acceleration = c.unit == "g" && (c.name.starts_with('a') || c.name.starts_with('A'));
+      if (acceleration) out_.remarks.push_back(fmt::format("column '{}': g is read as gram, not as 9.81 m/s^2", c.header));
+      if (c.unit == "in" && c.header.ends_with(')')) out_.remarks.push_back(fmt::format("column '{}': (in) is read as inch", c.header));
+    }
+    constexpr std::size_t most = 3;
+    if (of_one_letter.size() > most + 1) {
+      of_one_letter[most] = fmt::format("{} more", of_one_letter.size() - most);
+      of_one_letter.resize(most + 1);
+    }
+    if (!of_one_letter.empty())
+      out_.remarks.push_back("units read from the last letter of names: " + join_words(of_one_letter) +
+                             "; write one in brackets, as p_s[Pa], where it is a subscript");
+  }
+
       if (const std::size_t end = words.find("? Valid:"); end != std::string::npos) return words.substr(0, end) + "? Now ";
     }
     return "the unit '" + unit + "' is not known, ";
@@ -415,6 +439,7 @@ class ColumnClassifier {
   LooseTable table_;
   std::set<std::string> taken_;  // names that are reserved or given
   RecordingSurvey out_;
+  std::vector<bool> of_one_letter_;          ///< per column: its unit is the last letter of its name
   const RecordingChoice& choice_;
   bool of_log_ = false;  // the first column is its time
   std::set<std::size_t> left_out_;
