@@ -65,6 +65,28 @@ TEST(Recording, WhatStandsStillBetweenJumpsIsAnInputWhateverItIsCalled) {
   EXPECT_EQ(column(s, "b").use, ColumnUse::output);
 }
 
+/// More than half of the samples of all three equal the one before.
+TEST(Recording, AMeasurementThatStandsBetweenStepsOfItsLastDigitIsAnOutput) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const RecordingSurvey s = survey(rows("time[s],T_boiler,T_room,on,p", 600, [&](int k) {
+    const double boiler = 20.0 + 10.0 * (1.0 - std::exp(-k / 200.0)), room = 20.0 + 0.3 * std::sin(0.01 * k) + 0.03 * normal(random);
+    return fmt::format("{},{:.1f},{:.1f},{},{}", k, boiler, room, k / 50 % 2, 5 * (k / 30));  // p: a staircase, 0 % to 95 %
+  }));
+  EXPECT_GT(column(s, "T_boiler").held, 0.5);
+  EXPECT_EQ(column(s, "T_boiler").use, ColumnUse::output);
+  EXPECT_GT(column(s, "T_room").held, 0.5);
+  EXPECT_EQ(column(s, "T_room").use, ColumnUse::output);
+  EXPECT_EQ(column(s, "on").use, ColumnUse::input);
+  EXPECT_EQ(column(s, "p").use, ColumnUse::input);
+}
+
+TEST(Recording, WhereAllColumnsLookLikeInputsTheOutputIsOneThatIsNotCalledSo) {
+  const RecordingSurvey s = survey(rows("t_s,level,heater", 200, [](int k) { return fmt::format("{},{},{}", k, k / 40 % 3, k / 20 % 2); }));
+  EXPECT_EQ(column(s, "level").use, ColumnUse::output);
+  EXPECT_EQ(column(s, "heater").use, ColumnUse::input);
+}
+
 TEST(Recording, AMeasuredRateIsKnownByItsValues) {
   const RecordingSurvey s = survey(rows("t_s,theta_rad,omega_degps", 300, [](int k) {
     const double t = 0.01 * k;
@@ -157,6 +179,15 @@ TEST(Recording, AnUnknownUnitIsSaidOnceWithWhatItIsTakenAs) {
                              "column 'level[blob]': unknown unit 'blob' — did you mean 'lb'? Now its numbers are taken as they are"));
 }
 
+TEST(Recording, UnitsThatMayBeSomethingElseAreSaid) {
+  const RecordingSurvey s = survey(rows("t_s,p_s,acc_x[g],T (in),theta_rad", 100, [](int k) {
+    return fmt::format("{},{},{},{},{}", 0.1 * k, std::sin(0.1 * k), std::sin(0.7 * k), std::cos(0.4 * k), std::cos(1.3 * k));
+  }));
+  EXPECT_THAT(s.remarks, testing::UnorderedElementsAre("column 'acc_x[g]': g is read as gram, not as 9.81 m/s^2",
+                                                       "column 'T (in)': (in) is read as inch",
+                                                       HasSubstr("units read from the last letter of names: 'p_s' in s;")));
+}
+
 RecordingSurvey survey_with(const std::string& content, const RecordingChoice& choice) {
   const TemporaryFolder folder;
   return survey_recording(folder.write("x.csv", content), {}, choice);
@@ -179,15 +210,6 @@ TEST(Recording, ATemperatureWithoutAUnitIsNoTimeWhereThereIsOne) {
     EXPECT_EQ(dated.columns[0].use, ColumnUse::output) << name;
     EXPECT_EQ(dated.columns[1].use, ColumnUse::time);
     const RecordingSurvey elapsed = survey(rows(fmt::format("{},Elapsed Time (s),q", name), 50, [](int k) {
-TEST(Recording, UnitsThatMayBeSomethingElseAreSaid) {
-  const RecordingSurvey s = survey(rows("t_s,p_s,acc_x[g],T (in),theta_rad", 100, [](int k) {
-    return fmt::format("{},{},{},{},{}", 0.1 * k, std::sin(0.1 * k), std::sin(0.7 * k), std::cos(0.4 * k), std::cos(1.3 * k));
-  }));
-  EXPECT_THAT(s.remarks, testing::UnorderedElementsAre("column 'acc_x[g]': g is read as gram, not as 9.81 m/s^2",
-                                                       "column 'T (in)': (in) is read as inch",
-                                                       HasSubstr("units read from the last letter of names: 'p_s' in s;")));
-}
-
       return fmt::format("{},{},{}", 20.0 + 0.1 * k + (k % 3 == 0 ? 0.3 : 0.0), 0.5 * k, std::sin(0.3 * k));
     }));
     EXPECT_EQ(elapsed.columns[1].use, ColumnUse::time) << name;

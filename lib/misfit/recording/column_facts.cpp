@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string_view>
 
 #include "misfit/core/text.h"
@@ -90,6 +91,26 @@ double share_held(const std::vector<double>& values) {
     equal += values[i] == values[i - 1] ? 1U : 0U;
   }
   return pairs == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(pairs);
+}
+
+bool is_coarsely_digitised(const std::vector<double>& values, double resolution) {
+  if (!(resolution > 0.0)) return false;
+  const std::vector<double> known = finite(values);
+  std::set<long> levels;
+  std::size_t changes = 0, single = 0, turns = 0;
+  double before = 0.0;  // the change before this one [steps]
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    levels.insert(std::lround((known[i] - known.front()) / resolution));
+    const double change = i > 0 ? std::round((known[i] - known[i - 1]) / resolution) : 0.0;
+    if (change == 0.0) continue;
+    ++changes;
+    single += std::abs(change) == 1.0 ? 1U : 0U;
+    turns += change * before < 0.0 ? 1U : 0U;
+    before = change;
+  }
+  constexpr std::size_t of_a_staircase = 21, few = 5;
+  const bool flickers = levels.size() >= few && 2 * turns > changes;
+  return 2 * single > changes && (levels.size() > of_a_staircase || flickers);
 }
 
 bool is_smooth(const std::vector<double>& values) {

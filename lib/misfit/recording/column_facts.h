@@ -14,6 +14,10 @@ namespace misfit {
 /// Share of the samples that equal the one before.
 [[nodiscard]] double share_held(const std::vector<double>& values);
 
+/// A measurement that stands still between steps of its last digit (`resolution`), not a command that jumps: most of its changes are one
+/// such step, over more levels than a staircase of 5 % has, or to and fro among a few.
+[[nodiscard]] bool is_coarsely_digitised(const std::vector<double>& values, double resolution);
+
 /// A sentence for the highest and one for the lowest value, if an otherwise moving column stands there for ten samples or more, and twice
 /// as long as anywhere else.
 [[nodiscard]] std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values);

@@ -103,6 +103,7 @@ class ColumnClassifier {
       s.why = "never changes: " + format_value(s.low);
     } else {
       s.resolution = resolution_of(known);
+      s.jumps = s.held > held_share && !is_coarsely_digitised(column.values, s.resolution);
     }
     if (s.missing > 0)
       out_.remarks.push_back(fmt::format("column '{}': {} of {} values are missing", s.header, s.missing, column.values.size()));
@@ -272,8 +273,7 @@ class ColumnClassifier {
     }
   }
 
-  static constexpr double held_share = 0.5;
-  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.held > held_share; }
+  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.jumps; }
 
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
@@ -289,7 +289,7 @@ class ColumnClassifier {
       if (may_be_input && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (may_be_input && c.held > held_share) {
+      } else if (may_be_input && c.jumps) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
@@ -303,9 +303,12 @@ class ColumnClassifier {
       c.measured = c.use == ColumnUse::input && is_smooth(values(i));
     }
     if (!of_use(ColumnUse::output).empty()) return;
-    ColumnSurvey& last = out_.columns[open.back()];
+    const auto unlike = std::find_if(open.rbegin(), open.rend(), [this](std::size_t i) { return !is_called_input(out_.columns[i].name); });
+    ColumnSurvey& last = out_.columns[unlike == open.rend() ? open.back() : *unlike];
     last.use = ColumnUse::output;
-    last.why = "every column looks like an input; the last is taken as the output";
+    last.measured = false;
+    last.why = fmt::format("every column looks like an input; the last{} is taken as the output",
+                           unlike == open.rend() ? "" : " that is not called like one");
   }
 
   /// An output that is another's derivative: correlated to better than 0.99 with its central difference, with a slope within 10 % of 1.
@@ -338,12 +341,6 @@ class ColumnClassifier {
     }
   }
 
-  /// With the unit that may be meant.
-  static std::string not_known(const std::string& unit) {
-    try {
-      static_cast<void>(parse_unit(unit));
-    } catch (const InputError& error) {
-      const std::string words = error.what();
   /// Units that may be something else: a subscript (V is none), the acceleration of gravity, an inlet.
   void name_doubtful_units() {
     std::vector<std::string> of_one_letter;
@@ -366,6 +363,12 @@ class ColumnClassifier {
                              "; write one in brackets, as p_s[Pa], where it is a subscript");
   }
 
+  /// With the unit that may be meant.
+  static std::string not_known(const std::string& unit) {
+    try {
+      static_cast<void>(parse_unit(unit));
+    } catch (const InputError& error) {
+      const std::string words = error.what();
       if (const std::size_t end = words.find("? Valid:"); end != std::string::npos) return words.substr(0, end) + "? Now ";
     }
     return "the unit '" + unit + "' is not known, ";
@@ -433,13 +436,14 @@ class ColumnClassifier {
   }
 
   std::vector<std::string> not_understood_;  ///< unit in the header, per column; empty: known, or none, or found out
+  std::vector<bool> of_one_letter_;          ///< per column: its unit is the last letter of its name
   static constexpr std::size_t longest_name = 64, longest_header = 80;  // bytes
+  static constexpr double held_share = 0.5;                             // of the samples of what jumps
   static constexpr double min_forward_share = 0.5;                      // of a time
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   LooseTable table_;
   std::set<std::string> taken_;  // names that are reserved or given
   RecordingSurvey out_;
-  std::vector<bool> of_one_letter_;          ///< per column: its unit is the last letter of its name
   const RecordingChoice& choice_;
   bool of_log_ = false;  // the first column is its time
   std::set<std::size_t> left_out_;
