@@ -255,6 +255,13 @@ TEST(Recording, AnIdSplitsAndIsNoInputAlsoWhereRowsAlternate) {
   EXPECT_EQ(counted.parts.size(), 1U);
 }
 
+TEST(Recording, AnOnOffSignalCalledRunIsNoNumberOfARecording) {
+  const RecordingSurvey s =
+      survey(rows("t_s,run,y", 120, [](int k) { return fmt::format("{},{},{}", 0.1 * k, k / 20 % 2, std::sin(0.1 * k)); }));
+  EXPECT_EQ(column(s, "run").use, ColumnUse::input);
+  EXPECT_EQ(s.parts.size(), 1U);
+}
+
 TEST(Recording, WhatIsChosenIsTakenAndSaid) {
   const std::string content = rows("t_s,clock_ms,a,b,c", 100, [](int k) {
     return fmt::format("{},{},{},{},{}", 0.1 * k, 50 * k, std::sin(0.3 * k), std::cos(0.2 * k), k / 10 % 2);

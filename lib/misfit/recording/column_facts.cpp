@@ -113,6 +113,16 @@ bool is_coarsely_digitised(const std::vector<double>& values, double resolution)
   return 2 * single > changes && (levels.size() > of_a_staircase || flickers);
 }
 
+bool comes_back(const std::vector<double>& values) {
+  std::set<double> seen;
+  double last = std::nan("");
+  for (const double v : finite(values)) {
+    if (v != last && !seen.insert(v).second) return true;
+    last = v;
+  }
+  return false;
+}
+
 bool is_smooth(const std::vector<double>& values) {
   double squares = 0.0, products = 0.0;
   for (std::size_t i = 2; i < values.size(); ++i) {

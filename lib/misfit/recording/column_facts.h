@@ -18,6 +18,9 @@ namespace misfit {
 /// such step, over more levels than a staircase of 5 % has, or to and fro among a few.
 [[nodiscard]] bool is_coarsely_digitised(const std::vector<double>& values, double resolution);
 
+/// The number that came before comes again behind another one: on, off, on.
+[[nodiscard]] bool comes_back(const std::vector<double>& values);
+
 /// A sentence for the highest and one for the lowest value, if an otherwise moving column stands there for ten samples or more, and twice
 /// as long as anywhere else.
 [[nodiscard]] std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values);

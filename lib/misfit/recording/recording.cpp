@@ -224,11 +224,14 @@ class ColumnClassifier {
     out_.remarks.insert(out_.remarks.end(), time.remarks.begin(), time.remarks.end());
   }
 
-  /// Of the first column called segment, id, run or the like; one that only counts rows is passed over.
+  /// Of the first column called segment, id, run or the like; one that only counts rows is passed over, and an on/off signal, whose numbers
+  /// come again while time runs on, is none.
   void find_segments() {
+    const bool time_runs_on = forward(time_) == 1.0;
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
       if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i)))) continue;
+      if (time_runs_on && comes_back(values(i))) continue;
       const std::vector<double> known = finite(values(i));
       const std::set<double> numbers(known.begin(), known.end());
       constexpr std::size_t fewest_rows = 10;  // of a recording

@@ -64,9 +64,9 @@ class ChannelsUndecided : public InputError {
 /// forward ("T" without a unit where no other does); inputs by name ("u", "force", "valve", …) or because they stand still between jumps
 /// (other than steps of the last digit); the rest are outputs, one that is the derivative of another its rate. InputError: what
 /// read_loose_csv() refuses, text among numbers, no time column, nothing that could be an output, too few rows. `reserved`: names that no
-/// input, output or rate may have ("t" is always one). A column called segment, id, run or the like splits the recording. An unknown unit
-/// of time is an InputError; so is what `choice` names and the file has not, and a log of several clocks where `choice` says nothing
-/// (ChannelsUndecided).
+/// input, output or rate may have ("t" is always one). A column called segment, id, run or the like splits the recording, unless its
+/// numbers come again while time runs on. An unknown unit of time is an InputError; so is what `choice` names and the file has not, and a
+/// log of several clocks where `choice` says nothing (ChannelsUndecided).
 [[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved = {},
                                                const RecordingChoice& choice = {});
 
