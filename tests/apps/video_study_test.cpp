@@ -220,6 +220,17 @@ TEST(CalibrateFromPictures, WrongTablesAreRefusedWithThePlace) {
   }
 }
 
+/// Which lasts 4.95 s; counted at the rate at which it begins, 4 s.
+TEST(CalibrateFromPictures, PartsOfAVideoOfVariableRateAreFoundByItsTimes) {
+  const StudyCopy study("mpf_f111");
+  study.change("sweep = \"static_sweep.csv\"", "sweep_images = \"angles.csv\"");
+  fs::copy_file(paths::source() / "tests/apps/data/variable_rate.mp4", study.path("sweep.mp4"));
+  study.write("angles.csv", "theta[deg],file,from[s],to[s]\n0,sweep.mp4,0,1\n3,sweep.mp4,4.6,4.9\n");
+  const Outcome outcome = study.run("calibrate");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("three markers"), testing::Not(HasSubstr("lies in this part"))));
+}
+
 TEST(CalibrateFromPictures, WithoutMarkersNameTheirTable) {
   const StudyCopy study("mpf_f111");
   study.change("sweep = \"static_sweep.csv\"", "sweep_images = \"angles.csv\"");

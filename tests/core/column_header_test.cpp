@@ -46,5 +46,19 @@ TEST(ColumnHeader, NameAndUnitAreSeparated) {
   EXPECT_EQ(read_header("1st \xC3\xA4ngle").name, "c1st_aengle");
 }
 
+TEST(ColumnHeader, ASubscriptBehindALineIsNoUnit) {
+  for (const char* header : {"temp_min", "T_min", "y_max", "T_s", "T_h", "T_m", "T_W", "T1_s", "temp_m"}) {
+    EXPECT_EQ(read_header(header).name, header);
+    EXPECT_EQ(read_header(header).unit, "") << header;
+  }
+  for (const char* header : {"t_min", "time_min", "Elapsed Time_min"}) EXPECT_EQ(read_header(header).unit, "min") << header;
+  EXPECT_EQ(read_header("T_K").unit, "K");
+  EXPECT_EQ(read_header("T_degC").unit, "degC");
+  EXPECT_EQ(read_header("torque_Nm").unit, "N m");
+  EXPECT_TRUE(read_header("p_s").of_one_letter);
+  EXPECT_FALSE(read_header("p[s]").of_one_letter);
+  EXPECT_FALSE(read_header("p_kPa").of_one_letter);
+}
+
 }  // namespace
 }  // namespace misfit

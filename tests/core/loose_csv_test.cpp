@@ -45,6 +45,26 @@ TEST(LooseCsv, ReadsADecimalCommaWhereSemicolonsSeparate) {
   EXPECT_THAT(table.columns[1].values, ElementsAre(1.25, -25.0));
 }
 
+TEST(LooseCsv, TheDecimalCommaIsFoundWhereTheLastRowHoldsWholeNumbers) {
+  std::string rows = "Zeit;u;T\n";
+  for (int k = 0; k < 40; ++k) rows += std::to_string(k) + ";0;20\n";
+  const LooseTable table = read(rows + "40;1;20,5\n600;1;21\n");
+  EXPECT_TRUE(table.decimal_comma);
+  EXPECT_EQ(table.columns[2].text, 0U);
+  EXPECT_EQ(table.columns[2].values[40], 20.5);
+  const LooseTable dates = read("Zeit;T;note\n01.03.2024 00:10;20,5;v. 1.2, new\n01.03.2024 00:20;21;\n");
+  EXPECT_THAT(dates.columns[1].values, ElementsAre(20.5, 21.0)) << "a point of a date or of a text is none of a number";
+}
+
+TEST(LooseCsv, BlanksSeparateNumbersWithDecimalCommas) {
+  const LooseTable table = read("t y\n0,0 1,5\n0,1 2,5\n");
+  EXPECT_EQ(table.delimiter, ' ');
+  EXPECT_THAT(table.columns[0].values, ElementsAre(0.0, 0.1));
+  EXPECT_THAT(table.columns[1].values, ElementsAre(1.5, 2.5));
+  EXPECT_EQ(read("t, u, y\n0, 1, 2\n1, 2, 3\n").delimiter, ',');
+  EXPECT_EQ(read("t, u, y\n0, 1, on\n1, 2, off\n").delimiter, ',');
+}
+
 TEST(LooseCsv, ManyColumnsTakeNoQuadraticTime) {
   std::string header = "t", row = "0";
   for (int i = 1; i < 100'000; ++i) {

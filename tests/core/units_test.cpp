@@ -24,6 +24,19 @@ TEST(ParseUnit, ReadsProductsQuotientsAndPowers) {
   EXPECT_EQ(parse_unit(" m / s ").dimension, parse_unit("m/s").dimension);
 }
 
+TEST(ParseUnit, ReadsNegativePowersRightBehindAUnitAndAHyphenElsewhere) {
+  EXPECT_EQ(parse_unit("m s-1").dimension, parse_unit("m/s").dimension);
+  EXPECT_EQ(parse_unit("W m-2 K-1").dimension, parse_unit("W/m^2/K").dimension);
+  EXPECT_DOUBLE_EQ(parse_unit("min-1").to_si, 1.0 / 60.0);
+  EXPECT_DOUBLE_EQ(parse_unit("km h-1").to_si, 1.0 / 3.6);
+  EXPECT_EQ(parse_unit("m s−1").dimension, parse_unit("m/s").dimension) << "the sign minus";
+  EXPECT_EQ(parse_unit("m³ s⁻¹").dimension, parse_unit("m^3/s").dimension);
+  EXPECT_EQ(unit_in_si("l min-1"), "m^3/s");
+  EXPECT_EQ(parse_unit("N-m").dimension, parse_unit("N m").dimension);
+  EXPECT_THAT(message_of<InputError>([] { (void)parse_unit("m s -1"); }),
+              testing::HasSubstr("a negative power stands right behind its unit"));
+}
+
 TEST(ParseUnit, DividesByTheOneFactorThatFollows) {
   EXPECT_EQ(parse_unit("kg/m s").dimension, (Dimension{-1, 1, 1, 0, 0, 0}));
   EXPECT_EQ(parse_unit("kg/m/s").dimension, (Dimension{-1, 1, -1, 0, 0, 0}));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -62,6 +63,28 @@ TEST(Recording, WhatStandsStillBetweenJumpsIsAnInputWhateverItIsCalled) {
   EXPECT_EQ(column(s, "a").use, ColumnUse::input);
   EXPECT_THAT(column(s, "a").why, HasSubstr("constant between jumps"));
   EXPECT_EQ(column(s, "b").use, ColumnUse::output);
+}
+
+/// More than half of the samples of all three equal the one before.
+TEST(Recording, AMeasurementThatStandsBetweenStepsOfItsLastDigitIsAnOutput) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const RecordingSurvey s = survey(rows("time[s],T_boiler,T_room,on,p", 600, [&](int k) {
+    const double boiler = 20.0 + 10.0 * (1.0 - std::exp(-k / 200.0)), room = 20.0 + 0.3 * std::sin(0.01 * k) + 0.03 * normal(random);
+    return fmt::format("{},{:.1f},{:.1f},{},{}", k, boiler, room, k / 50 % 2, 5 * (k / 30));  // p: a staircase, 0 % to 95 %
+  }));
+  EXPECT_GT(column(s, "T_boiler").held, 0.5);
+  EXPECT_EQ(column(s, "T_boiler").use, ColumnUse::output);
+  EXPECT_GT(column(s, "T_room").held, 0.5);
+  EXPECT_EQ(column(s, "T_room").use, ColumnUse::output);
+  EXPECT_EQ(column(s, "on").use, ColumnUse::input);
+  EXPECT_EQ(column(s, "p").use, ColumnUse::input);
+}
+
+TEST(Recording, WhereAllColumnsLookLikeInputsTheOutputIsOneThatIsNotCalledSo) {
+  const RecordingSurvey s = survey(rows("t_s,level,heater", 200, [](int k) { return fmt::format("{},{},{}", k, k / 40 % 3, k / 20 % 2); }));
+  EXPECT_EQ(column(s, "level").use, ColumnUse::output);
+  EXPECT_EQ(column(s, "heater").use, ColumnUse::input);
 }
 
 TEST(Recording, AMeasuredRateIsKnownByItsValues) {
@@ -156,6 +179,15 @@ TEST(Recording, AnUnknownUnitIsSaidOnceWithWhatItIsTakenAs) {
                              "column 'level[blob]': unknown unit 'blob' — did you mean 'lb'? Now its numbers are taken as they are"));
 }
 
+TEST(Recording, UnitsThatMayBeSomethingElseAreSaid) {
+  const RecordingSurvey s = survey(rows("t_s,p_s,acc_x[g],T (in),theta_rad", 100, [](int k) {
+    return fmt::format("{},{},{},{},{}", 0.1 * k, std::sin(0.1 * k), std::sin(0.7 * k), std::cos(0.4 * k), std::cos(1.3 * k));
+  }));
+  EXPECT_THAT(s.remarks, testing::UnorderedElementsAre("column 'acc_x[g]': g is read as gram, not as 9.81 m/s^2",
+                                                       "column 'T (in)': (in) is read as inch",
+                                                       HasSubstr("units read from the last letter of names: 'p_s' in s;")));
+}
+
 RecordingSurvey survey_with(const std::string& content, const RecordingChoice& choice) {
   const TemporaryFolder folder;
   return survey_recording(folder.write("x.csv", content), {}, choice);
@@ -168,6 +200,23 @@ TEST(Recording, AnUnknownUnitOfTimeStopsAndKnownOnesAreConverted) {
   EXPECT_THAT(refusal(with("t[ticks]")), HasSubstr("'ticks' is no known unit of time; known are s, ms, us, ns, min, h and d, and dates"));
   EXPECT_DOUBLE_EQ(survey(with("time[us]")).step, 2e-3);
   EXPECT_DOUBLE_EQ(survey(with("timestamp_ns")).step, 2e-6);
+}
+
+TEST(Recording, ATemperatureWithoutAUnitIsNoTimeWhereThereIsOne) {
+  for (const char* name : {"T", "T1", "T_2"}) {
+    const RecordingSurvey dated = survey(rows(fmt::format("{},DateTime,q", name), 50, [](int k) {
+      return fmt::format("{},2026-01-02 03:04:{:02},{}", 20.0 + 0.1 * k, k, std::sin(0.3 * k));
+    }));
+    EXPECT_EQ(dated.columns[0].use, ColumnUse::output) << name;
+    EXPECT_EQ(dated.columns[1].use, ColumnUse::time);
+    const RecordingSurvey elapsed = survey(rows(fmt::format("{},Elapsed Time (s),q", name), 50, [](int k) {
+      return fmt::format("{},{},{}", 20.0 + 0.1 * k + (k % 3 == 0 ? 0.3 : 0.0), 0.5 * k, std::sin(0.3 * k));
+    }));
+    EXPECT_EQ(elapsed.columns[1].use, ColumnUse::time) << name;
+    EXPECT_DOUBLE_EQ(elapsed.step, 0.5);
+  }
+  const RecordingSurvey alone = survey(rows("T,y_s", 50, [](int k) { return fmt::format("{},{}", 0.1 * k, std::sin(0.3 * k)); }));
+  EXPECT_EQ(alone.columns[0].use, ColumnUse::time);
 }
 
 TEST(Recording, DatesAreATimeInSeconds) {
@@ -206,6 +255,13 @@ TEST(Recording, AnIdSplitsAndIsNoInputAlsoWhereRowsAlternate) {
   EXPECT_EQ(counted.parts.size(), 1U);
 }
 
+TEST(Recording, AnOnOffSignalCalledRunIsNoNumberOfARecording) {
+  const RecordingSurvey s =
+      survey(rows("t_s,run,y", 120, [](int k) { return fmt::format("{},{},{}", 0.1 * k, k / 20 % 2, std::sin(0.1 * k)); }));
+  EXPECT_EQ(column(s, "run").use, ColumnUse::input);
+  EXPECT_EQ(s.parts.size(), 1U);
+}
+
 TEST(Recording, WhatIsChosenIsTakenAndSaid) {
   const std::string content = rows("t_s,clock_ms,a,b,c", 100, [](int k) {
     return fmt::format("{},{},{},{},{}", 0.1 * k, 50 * k, std::sin(0.3 * k), std::cos(0.2 * k), k / 10 % 2);
@@ -223,6 +279,12 @@ TEST(Recording, WhatIsChosenIsTakenAndSaid) {
                 static_cast<void>(survey_with(content, {{"aa"}, {}, "", {}, {}}));
               }),
               HasSubstr("no column 'aa' — did you mean 'a'"));
+}
+
+TEST(Recording, ATimeThatIsChosenIsTakenWhateverTheFirstColumnIsCalled) {
+  const std::string content =
+      rows("t[s],clock_ms,y", 50, [](int k) { return fmt::format("{},{},{}", 0.1 * k, 50 * k, std::sin(0.3 * k)); });
+  EXPECT_NEAR(survey_with(content, {{}, {}, "clock_ms", {}, {}}).step, 0.05, 1e-9);
 }
 
 TEST(Recording, NamesMayBeGivenWhereTheFileHasNone) {
@@ -262,6 +324,25 @@ TEST(Recording, TimeThatRunsBackwardBeginsAnotherExperiment) {
   EXPECT_EQ(s.parts[0].rows(), 60U);
   EXPECT_EQ(s.parts[1].rows(), 40U);
   EXPECT_THAT(s.remarks, Contains(HasSubstr("backward")));
+}
+
+/// An NPY file of records of t and y.
+std::string npy(const std::vector<std::array<double, 2>>& records) {
+  std::string head = fmt::format("{{'descr': [('t', '<f8'), ('y', '<f8')], 'fortran_order': False, 'shape': ({},), }}", records.size());
+  head.resize(118, ' ');
+  std::string out = std::string("\x93NUMPY\x01\x00\x76\x00", 10) + head;
+  for (const auto& record : records) out.append(reinterpret_cast<const char*>(record.data()), sizeof record);
+  return out;
+}
+
+TEST(Recording, TimeThatRunsBackwardBeginsAnotherExperimentInALogAsWell) {
+  std::vector<std::array<double, 2>> records;
+  for (int k = 0; k < 90; ++k) records.push_back({0.1 * (k % 30), std::sin(0.3 * k)});
+  const TemporaryFolder folder;
+  const RecordingSurvey s = survey_recording(folder.write("runs.npy", npy(records)));
+  ASSERT_EQ(s.parts.size(), 3U);
+  EXPECT_EQ(s.parts[2].rows(), 30U);
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("time runs backward 2 times: 3 recordings in one file")));
 }
 
 TEST(Recording, TheStepOfADigitisedColumnIsFound) {

@@ -52,5 +52,27 @@ TEST(FrameClock, WithoutTimestampsTheDeclaredRateHolds) {
   EXPECT_EQ(clock_of({0.0}, 25.0).rate, 25.0);
 }
 
+/// Over the first hundred frames nothing shows that the rate is wrong.
+TEST(FrameNumbers, ARateThatIsALittleWrongLosesNoFrameAndOneThatIsMissingIsSeenToTheEnd) {
+  const std::vector<double> all = times(20'000, 29.99, 1e-3);
+  for (const double rate : {30.0, 29.98}) {
+    FrameNumbers numbers;
+    std::size_t wrong = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (k == 15'000) continue;
+      wrong += numbers.next(all[k], rate) == static_cast<long>(k) ? 0U : 1U;
+    }
+    EXPECT_EQ(wrong, 0U) << rate;
+  }
+}
+
+TEST(FrameNumbers, WithoutATimeFramesFollowEachOther) {
+  FrameNumbers numbers;
+  EXPECT_EQ(numbers.next({}, 25.0), 0);
+  EXPECT_EQ(numbers.next({}, 25.0), 1);
+  EXPECT_EQ(numbers.next(0.16, 25.0), 4);
+  EXPECT_EQ(numbers.next({}, 25.0), 5);
+}
+
 }  // namespace
 }  // namespace misfit

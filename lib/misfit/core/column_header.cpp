@@ -89,6 +89,18 @@ std::string as_name(std::string_view header) {
   return std::isdigit(static_cast<unsigned char>(out.front())) != 0 ? "c" + out : out;
 }
 
+/// "temp_min", "T_s": the end of a name is a subscript, though it reads as a unit.
+bool is_subscript(const std::string& name, std::string_view end) {
+  std::string word = name;
+  std::transform(word.begin(), word.end(), word.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  constexpr std::array<std::string_view, 6> of_time = {"timestamp", "elapsed", "duration", "dauer", "temps", "tijd"};
+  const bool is_time =
+      name == "t" || word.ends_with("time") || word.ends_with("zeit") || std::find(of_time.begin(), of_time.end(), word) != of_time.end();
+  if (end == "min") return !is_time;
+  const bool bare = name.front() == 'T' && name.find_first_not_of("0123456789_", 1) == std::string::npos;
+  return end.size() == 1 && end != "K" && !is_time && (bare || word.starts_with("temp"));
+}
+
 }  // namespace
 
 NameAndUnit read_header(const std::string& header) {
@@ -96,7 +108,7 @@ NameAndUnit read_header(const std::string& header) {
     const auto from = header.rfind(open), to = header.rfind(close);
     if (from == std::string::npos || to == std::string::npos || to < from || from == 0) continue;
     const std::string inside = plain_unit(header.substr(from + 1, to - from - 1));
-    NameAndUnit out{as_name(header.substr(0, from)), "", ""};
+    NameAndUnit out{as_name(header.substr(0, from)), "", "", false};
     const auto spelt = std::find_if(spellings.begin(), spellings.end(), [&](const Spelling& s) { return s.written == inside; });
     if (is_unit(inside)) {
       out.unit = inside;
@@ -111,13 +123,15 @@ NameAndUnit read_header(const std::string& header) {
   }
   const std::string name = as_name(header);
   std::size_t best = 0;
-  NameAndUnit out{name, "", ""};
+  NameAndUnit out{name, "", "", false};
   for (const Spelling& s : spellings) {
     if (name == s.written && std::find(units_as_names.begin(), units_as_names.end(), name) != units_as_names.end()) out.unit = s.unit;
     const std::string tail = "_" + std::string(s.written);
     if (name.size() <= tail.size() || !name.ends_with(tail) || tail.size() <= best) continue;
+    const std::string front = name.substr(0, name.size() - tail.size());
+    if (is_subscript(front, s.written)) continue;
     best = tail.size();
-    out = {name.substr(0, name.size() - tail.size()), std::string(s.unit), ""};
+    out = {front, std::string(s.unit), "", s.written.size() == 1};
   }
   return out;
 }

@@ -113,27 +113,52 @@ class LooseReader {
     }
   }
 
-  /// The separator that splits the first lines into the most cells, equally many on each; a comma may also be a decimal comma.
+  /// The separator that splits the first rows and the last into the most cells, equally many in each; a comma may also be a decimal comma.
   void find_delimiter() {
     const std::size_t looked_at = std::min<std::size_t>(lines_.size(), 20);
+    std::vector<std::string_view> rows{lines_.back().text};
+    for (std::size_t i = 1; i < looked_at; ++i) rows.push_back(lines_[i].text);
     std::size_t most = 1;
     for (const char candidate : {';', '\t', ',', ' '}) {
-      const std::size_t cells = cells_of(lines_.back().text, candidate).size();
-      bool equal = true;
-      for (std::size_t i = lines_.size() > 1 ? 1 : 0; i < looked_at; ++i)
-        equal = equal && cells_of(lines_[i].text, candidate).size() == cells;
+      const std::size_t cells = cells_of(rows.front(), candidate).size();
+      const bool equal = std::all_of(rows.begin(), rows.end(), [&](std::string_view r) { return cells_of(r, candidate).size() == cells; });
       const bool only_blank = candidate == ' ' && most > 1;  // blanks after commas are no separators
       if (!equal || cells <= most || only_blank || (candidate == ',' && most > 1)) continue;
       most = cells;
       table_.delimiter = candidate;
     }
-    if (table_.delimiter == ',') return;
-    const std::vector<std::string_view> row = cells_of(lines_.back().text, table_.delimiter);
-    const auto any_with = [&](char sign) {  // dates have points of their own
-      return std::any_of(row.begin(), row.end(),
-                         [&](std::string_view c) { return c.find(sign) != std::string_view::npos && !read_iso_date(c); });
+    if (table_.delimiter == ',' && only_blanks_separate(rows)) table_.delimiter = ' ';
+    table_.decimal_comma = table_.delimiter != ',' && has_decimal_commas();
+  }
+
+  /// "0,1 2,5": numbers with decimal commas, which commas would split into what is none ("1 2").
+  [[nodiscard]] static bool only_blanks_separate(const std::vector<std::string_view>& rows) {
+    const std::size_t columns = cells_of(rows.front(), ' ').size();
+    const auto numbers = [&](char delimiter) {
+      return std::all_of(rows.begin(), rows.end(), [&](std::string_view row) {
+        const auto cells = cells_of(row, delimiter);
+        const bool all =
+            std::all_of(cells.begin(), cells.end(), [&](std::string_view c) { return number_of(c, delimiter == ' ').has_value(); });
+        return all && (delimiter != ' ' || cells.size() == columns);
+      });
     };
-    table_.decimal_comma = any_with(',') && !any_with('.');
+    return columns > 1 && numbers(' ') && !numbers(',');
+  }
+
+  /// By the first row with more numbers that have a decimal comma than such that have a point. Dates are no numbers.
+  [[nodiscard]] bool has_decimal_commas() const {
+    for (std::size_t i = lines_.size() > 1 ? 1 : 0; i < lines_.size(); ++i) {
+      if (lines_[i].text.find_first_of(",.") == std::string_view::npos) continue;
+      const std::vector<std::string_view> cells = cells_of(lines_[i].text, table_.delimiter);
+      const auto count = [&](char sign) {
+        return std::count_if(cells.begin(), cells.end(), [&](std::string_view c) {
+          return c.find(sign) != std::string_view::npos && number_of(c, sign == ',').has_value();
+        });
+      };
+      const auto commas = count(','), points = count('.');
+      if (commas != points) return commas > points;
+    }
+    return false;
   }
 
   [[nodiscard]] bool all_numbers(const std::vector<std::string_view>& cells) const {

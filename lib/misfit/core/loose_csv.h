@@ -31,10 +31,10 @@ struct LooseTable {
 };
 
 /// Reads numbers in columns however they are separated: by commas, semicolons, tabs or blanks, found from the lines themselves; with a
-/// decimal point, or a decimal comma where the separator is another. The header may be the last comment line; `names`, if there are any,
-/// replace it where the file has none, and else instead of its own. Quotation marks around cells are taken off. A column of
-/// dates (core/iso_date.h) is read as seconds. InputError: other than as many names as columns; no such file, nothing in it, no header
-/// ("the first line holds numbers"), no rows, rows of another length, one column alone, a name used twice.
+/// decimal point, or a decimal comma where the separator is another, found from the first row that shows it. The header may be the last
+/// comment line; `names`, if there are any, replace it where the file has none, and else instead of its own. Quotation marks around cells
+/// are taken off. A column of dates (core/iso_date.h) is read as seconds. InputError: other than as many names as columns; no such file,
+/// nothing in it, no header ("the first line holds numbers"), no rows, rows of another length, one column alone, a name used twice.
 [[nodiscard]] LooseTable read_loose_csv(const std::filesystem::path& path, const std::vector<std::string>& names = {});
 
 }  // namespace misfit

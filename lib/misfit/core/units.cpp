@@ -138,7 +138,7 @@ const Known& find_unit(std::string_view name, std::string_view whole) {
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Reads one unit from left to right: FACTOR { (blank | * | · | /) FACTOR }, FACTOR = NAME [^] [POWER].
+/// Reads one unit from left to right: FACTOR { (blank | * | · | - | /) FACTOR }, FACTOR = NAME [^] [POWER].
 class UnitReader {
  public:
   explicit UnitReader(std::string_view text) : whole_(text), rest_(text) {}
@@ -191,6 +191,7 @@ class UnitReader {
   std::string_view name() {
     std::size_t n = 0;
     while (n < rest_.size() && is_letter(rest_[n])) ++n;
+    if (rest_.front() == '-' && power_follows()) refuse("a negative power stands right behind its unit, as in 's-1' or 's^-1'");
     if (n == 0 && (rest_[0] == '-' || rest_[0] == '%' || rest_[0] == '1')) n = 1;
     if (n == 0) n = std::min(rest_.size(), rest_.find_first_of(" \t/*^"));  // something unknown: named as a whole
     if (n == 0) refuse("a unit is expected before '" + std::string(rest_) + "'");
@@ -199,9 +200,15 @@ class UnitReader {
     return out;
   }
 
+  /// "2" or "-2" without '^'. Another '-' is a hyphen: "N-m".
+  [[nodiscard]] bool power_follows() const {
+    const std::size_t sign = rest_.starts_with('-') ? 1 : 0;
+    return rest_.size() > sign && is_digit(rest_[sign]);
+  }
+
   /// A number after '^', perhaps a fraction in parentheses, or digits.
   double power() {
-    if (!take("^")) return rest_.empty() || !is_digit(rest_.front()) ? 1.0 : number(true);
+    if (!take("^")) return power_follows() ? number(true) : 1.0;
     if (!take("(")) return number(false);
     double value = number(false);
     if (take("/")) {
@@ -216,7 +223,7 @@ class UnitReader {
   double number(bool whole) {
     double value = 0.0;
     const char* last = rest_.data() + rest_.size();
-    if (whole) last = rest_.data() + std::min(rest_.size(), rest_.find_first_not_of("0123456789"));
+    if (whole) last = rest_.data() + std::min(rest_.size(), rest_.find_first_not_of("0123456789", 1));
     const auto [end, error] = std::from_chars(rest_.data(), last, value, std::chars_format::fixed);
     constexpr double most = 12.0;
     if (error != std::errc() || !(std::abs(value) <= most)) refuse("a power must be a number from -12 to 12");
@@ -263,9 +270,21 @@ bool Unit::same_dimension(const Unit& other) const {
 }
 
 std::string plain_unit(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> signs = {
-      {{"°", "deg"}, {"℃", "degC"}, {"℉", "degF"}, {"µ", "u"}, {"μ", "u"}, {"Ω", "Ohm"}, {"²", "^2"}, {"U/min", "rpm"}}};
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 3> latin = {{{"\xB0", "deg"}, {"\xB5", "u"}, {"\xB2", "^2"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> signs = {{{"°", "deg"},
+                                                                                           {"℃", "degC"},
+                                                                                           {"℉", "degF"},
+                                                                                           {"µ", "u"},
+                                                                                           {"μ", "u"},
+                                                                                           {"Ω", "Ohm"},
+                                                                                           {"²", "^2"},
+                                                                                           {"³", "^3"},
+                                                                                           {"⁻¹", "^-1"},
+                                                                                           {"⁻²", "^-2"},
+                                                                                           {"⁻³", "^-3"},
+                                                                                           {"−", "-"},
+                                                                                           {"U/min", "rpm"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 4> latin = {
+      {{"\xB0", "deg"}, {"\xB5", "u"}, {"\xB2", "^2"}, {"\xB3", "^3"}}};
   std::string out;
   const auto take = [&](const auto& table) {
     const auto sign = std::find_if(table.begin(), table.end(), [&](const auto& s) { return text.starts_with(s.first); });

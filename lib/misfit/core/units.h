@@ -24,14 +24,14 @@ struct Unit {
   [[nodiscard]] bool same_dimension(const Unit& other) const;
 };
 
-/// Parses "kg m^2", "px/m", "N m", "deg/s", "1/s", "m/s^2", "in", "Pa", "V". Factors are separated by blank, '*' or '·', a '/'
-/// divides by the ONE factor that follows it; powers stand after '^' (also negative or broken: "V^0.5", "V^(1/2)") or are a digit ("m2").
-/// Known: m mm cm um km in ft; l ml; kg g mg lb; s ms us ns min h d; Hz kHz MHz; mph knot; rad (or radian) deg mrad rev rpm; N kN mN lbf;
-/// Pa kPa hPa MPa bar mbar psf psi; J kJ Wh kWh; W mW kW MW; A mA uA; V mV uV kV; Ohm; T mT uT; K degC degF; px pix pixel; - % 1; with the
-/// signs of plain_unit(). Throws InputError naming the unknown part and the nearest known unit.
+/// Parses "kg m^2", "px/m", "N m", "deg/s", "1/s", "m/s^2", "in", "Pa", "V". Factors are separated by blank, '*', '·' or a hyphen ("N-m"),
+/// a '/' divides by the ONE factor that follows it; powers stand after '^' (also negative or broken: "V^0.5", "V^(1/2)") or are digits
+/// right behind the name ("m2", "m s-1"). Known: m mm cm um km in ft; l ml; kg g mg lb; s ms us ns min h d; Hz kHz MHz; mph knot; rad (or
+/// radian) deg mrad rev rpm; N kN mN lbf; Pa kPa hPa MPa bar mbar psf psi; J kJ Wh kWh; W mW kW MW; A mA uA; V mV uV kV; Ohm; T mT uT; K
+/// degC degF; px pix pixel; - % 1; with the signs of plain_unit(). Throws InputError naming the unknown part and the nearest known unit.
 [[nodiscard]] Unit parse_unit(std::string_view text);
 
-/// Signs as letters: "°" → "deg", "°C" → "degC", "µs" → "us", "Ω" → "Ohm", "²" → "^2", in UTF-8 or Latin-1.
+/// Signs as letters: "°" → "deg", "°C" → "degC", "µs" → "us", "Ω" → "Ohm", "²" → "^2", "⁻¹" → "^-1", in UTF-8 or Latin-1.
 [[nodiscard]] std::string plain_unit(std::string_view text);
 
 /// The same in SI: "deg/s" → "rad/s", "kPa" → "Pa", "rpm/V" → "rad/s/V", "degC" → "K". Throws as parse_unit().

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string_view>
 
 #include "misfit/core/text.h"
@@ -17,12 +18,15 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+std::string without_number(std::string name) {
+  while (!name.empty() && ((name.back() >= '0' && name.back() <= '9') || name.back() == '_')) name.pop_back();
+  return name;
+}
+
 /// The name, or the name with a number behind it ("u1"), is among the words.
 template <std::size_t N>
 bool is_called(const std::string& name, const std::array<std::string_view, N>& words) {
-  std::string bare = lower_case(name);
-  while (!bare.empty() && ((bare.back() >= '0' && bare.back() <= '9') || bare.back() == '_')) bare.pop_back();
-  return std::find(words.begin(), words.end(), bare) != words.end();
+  return std::find(words.begin(), words.end(), without_number(lower_case(name))) != words.end();
 }
 
 constexpr std::array<std::string_view, 8> time_words = {"t", "time", "zeit", "timestamp", "sec", "seconds", "tijd", "temps"};
@@ -89,6 +93,36 @@ double share_held(const std::vector<double>& values) {
   return pairs == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(pairs);
 }
 
+bool is_coarsely_digitised(const std::vector<double>& values, double resolution) {
+  if (!(resolution > 0.0)) return false;
+  const std::vector<double> known = finite(values);
+  std::set<long> levels;
+  std::size_t changes = 0, single = 0, turns = 0;
+  double before = 0.0;  // the change before this one [steps]
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    levels.insert(std::lround((known[i] - known.front()) / resolution));
+    const double change = i > 0 ? std::round((known[i] - known[i - 1]) / resolution) : 0.0;
+    if (change == 0.0) continue;
+    ++changes;
+    single += std::abs(change) == 1.0 ? 1U : 0U;
+    turns += change * before < 0.0 ? 1U : 0U;
+    before = change;
+  }
+  constexpr std::size_t of_a_staircase = 21, few = 5;
+  const bool flickers = levels.size() >= few && 2 * turns > changes;
+  return 2 * single > changes && (levels.size() > of_a_staircase || flickers);
+}
+
+bool comes_back(const std::vector<double>& values) {
+  std::set<double> seen;
+  double last = std::nan("");
+  for (const double v : finite(values)) {
+    if (v != last && !seen.insert(v).second) return true;
+    last = v;
+  }
+  return false;
+}
+
 bool is_smooth(const std::vector<double>& values) {
   double squares = 0.0, products = 0.0;
   for (std::size_t i = 2; i < values.size(); ++i) {
@@ -117,6 +151,7 @@ std::vector<std::string> limit_remarks(const std::string& header, const std::vec
 }
 
 bool is_called_time(const std::string& name) { return is_called(name, time_words); }
+bool may_be_temperature(const std::string& name) { return name != "t" && without_number(lower_case(name)) == "t"; }
 bool is_called_input(const std::string& name) {
   const auto before = name.rfind('_');
   return is_called(name, input_words) || is_weather(name) ||

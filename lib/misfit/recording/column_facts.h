@@ -14,6 +14,13 @@ namespace misfit {
 /// Share of the samples that equal the one before.
 [[nodiscard]] double share_held(const std::vector<double>& values);
 
+/// A measurement that stands still between steps of its last digit (`resolution`), not a command that jumps: most of its changes are one
+/// such step, over more levels than a staircase of 5 % has, or to and fro among a few.
+[[nodiscard]] bool is_coarsely_digitised(const std::vector<double>& values, double resolution);
+
+/// The number that came before comes again behind another one: on, off, on.
+[[nodiscard]] bool comes_back(const std::vector<double>& values);
+
 /// A sentence for the highest and one for the lowest value, if an otherwise moving column stands there for ten samples or more, and twice
 /// as long as anywhere else.
 [[nodiscard]] std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values);
@@ -23,6 +30,7 @@ namespace misfit {
 
 // By name, case and a number behind it ("u1") aside.
 [[nodiscard]] bool is_called_time(const std::string& name);
+[[nodiscard]] bool may_be_temperature(const std::string& name);  ///< "T", "T1", "t_2"
 [[nodiscard]] bool is_called_input(const std::string& name);
 [[nodiscard]] bool is_called_segment(const std::string& name);
 

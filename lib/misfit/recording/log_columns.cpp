@@ -110,18 +110,19 @@ ChannelsUndecided::ChannelsUndecided(const std::string& source, std::string chan
       channels_(std::move(channels)) {}
 
 RecordingTable recording_table(const std::filesystem::path& path, const RecordingChoice& choice) {
-  if (!is_binary_log(path)) return {read_loose_csv(path, choice.names), "", {}};
+  if (!is_binary_log(path)) return {read_loose_csv(path, choice.names), "", {}, false};
   const std::unique_ptr<LogReader> reader = open_log(path);
   const Log& log = reader->log();
   if (!choice.names.empty()) throw InputError({log.source, 0, 0}, "--names are for CSV files: the channels of a log have names");
-  RecordingTable out{{}, log.format, log.notes};
+  RecordingTable out{{}, log.format, log.notes, true};
   if (log.channels.empty()) throw InputError({log.source, 0, 0}, "no series of numbers is in it");
   const std::vector<WantedChannel> wanted = wanted_of(log, choice);
-  const Table table = on_one_time_base(*reader, wanted, choice.time.empty() ? std::nullopt : std::optional(choice.time), out.notes);
+  const std::optional<std::string> time = choice.time.empty() ? std::nullopt : std::optional(choice.time);
+  const Table table = on_one_time_base(*reader, wanted, time, out.notes, Rows::as_recorded);
   out.table.source = table.source;
   for (const Column& c : table.columns) {
-    const bool time = out.table.columns.empty();
-    const std::string header = time ? "t[s]" : short_name(c.name, wanted) + "[" + (c.unit.empty() ? "-" : c.unit) + "]";
+    const std::string header =
+        out.table.columns.empty() ? "t[s]" : short_name(c.name, wanted) + "[" + (c.unit.empty() ? "-" : c.unit) + "]";
     out.table.columns.push_back({header, c.values, 0, 0, "", false, ""});
   }
   out.table.line.resize(table.rows());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -32,6 +33,7 @@ class ColumnClassifier {
     out_.rows = table_.rows();
     out_.format = recording.format;
     out_.remarks = recording.notes;
+    of_log_ = recording.of_log;
   }
 
   RecordingSurvey run() {
@@ -45,6 +47,7 @@ class ColumnClassifier {
     make_names_usable();
     find_rates();
     name_unknown_units();
+    name_doubtful_units();
     fill_parts();
     return std::move(out_);
   }
@@ -73,6 +76,7 @@ class ColumnClassifier {
       out_.remarks.push_back(fmt::format("column '{}' holds dates: read as seconds since {}{}", s.header,
                                          column.from_midnight ? "the midnight before " : "", shown(column.first_date)));
     not_understood_.push_back(shown(header.not_understood, longest_header));
+    of_one_letter_.push_back(header.of_one_letter);
     const std::vector<double> known = finite(column.values);
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
@@ -99,6 +103,7 @@ class ColumnClassifier {
       s.why = "never changes: " + format_value(s.low);
     } else {
       s.resolution = resolution_of(known);
+      s.jumps = s.held > held_share && !is_coarsely_digitised(column.values, s.resolution);
     }
     if (s.missing > 0)
       out_.remarks.push_back(fmt::format("column '{}': {} of {} values are missing", s.header, s.missing, column.values.size()));
@@ -146,27 +151,47 @@ class ColumnClassifier {
     fail(0, option + ": no column '" + shown(name) + "'" + suggest(name, names));
   }
 
+  /// How surely a column is time, 0 the surest; nullopt: it is none. "T" without a unit may as well be a temperature.
+  std::optional<int> rank_of_time(std::size_t i) const {
+    const ColumnSurvey& c = out_.columns[i];
+    const bool of_time = parse_unit(c.unit).same_dimension(parse_unit("s"));
+    const bool called = is_called_time(c.name) && (of_time || c.unit == "-");
+    if (c.use != ColumnUse::unused || !(of_time || called)) return std::nullopt;
+    const double rows = forward(i), steps = forward(i, false);
+    if (called && (of_time || !may_be_temperature(c.name)) && steps > min_forward_share) return 0;
+    if (of_time && rows == 1.0) return 1;
+    if (called && rows == 1.0) return 2;
+    if (of_time && rows > min_forward_share) return 3;
+    if (called && steps > min_forward_share) return 4;
+    return std::nullopt;
+  }
+
+  /// " ('n' counts rows, …": the first column that does, for the message that none is time.
+  std::string counter() const {
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      if (out_.columns[i].use == ColumnUse::unused && forward(i) == 1.0 && is_integer(finite(values(i))))
+        return " ('" + out_.columns[i].header + "' counts rows, but over which interval?)";
+    }
+    return "";
+  }
+
+  /// The first of the surest; of a log the one that its rows are of.
   void find_time() {
-    constexpr double min_forward_share = 0.5;
-    std::string counter;
-    const bool given = !choice_.time.empty() && table_.columns.front().header != "t[s]";
+    if (of_log_) time_ = 0;
+    const bool given = !of_log_ && !choice_.time.empty();
     if (given) time_ = column_named(choice_.time, "--time");
     if (given && (out_.columns[time_].use != ColumnUse::unused || !(forward(time_) > min_forward_share)))
       fail(0, fmt::format("column '{}' is no time: it does not run forward", out_.columns[time_].header));
-    for (const bool by_name : {true, false}) {
-      for (std::size_t i = 0; i < out_.columns.size() && time_ == none; ++i) {
-        ColumnSurvey& c = out_.columns[i];
-        if (c.use != ColumnUse::unused || !(forward(i, !by_name) > min_forward_share)) continue;
-        const Unit unit = parse_unit(c.unit);
-        const bool of_time = unit.same_dimension(parse_unit("s"));
-        if (by_name ? is_called_time(c.name) && (of_time || c.unit == "-") : of_time) time_ = i;
-        if (time_ == none && counter.empty() && forward(i) == 1.0 && is_integer(finite(values(i)))) counter = c.header;
-      }
+    std::optional<int> surest;
+    for (std::size_t i = 0; i < out_.columns.size() && !given && !of_log_; ++i) {
+      const std::optional<int> rank = rank_of_time(i);
+      if (!rank || (surest && *rank >= *surest)) continue;
+      surest = rank;
+      time_ = i;
     }
     if (time_ == none) {
       fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, or holds dates, and increases") +
-                  (counter.empty() ? "" : " ('" + counter + "' counts rows, but over which interval?)") +
-                  "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
+                  counter() + "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
     }
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
@@ -199,11 +224,14 @@ class ColumnClassifier {
     out_.remarks.insert(out_.remarks.end(), time.remarks.begin(), time.remarks.end());
   }
 
-  /// Of the first column called segment, id, run or the like; one that only counts rows is passed over.
+  /// Of the first column called segment, id, run or the like; one that only counts rows is passed over, and an on/off signal, whose numbers
+  /// come again while time runs on, is none.
   void find_segments() {
+    const bool time_runs_on = forward(time_) == 1.0;
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
       if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i)))) continue;
+      if (time_runs_on && comes_back(values(i))) continue;
       const std::vector<double> known = finite(values(i));
       const std::set<double> numbers(known.begin(), known.end());
       constexpr std::size_t fewest_rows = 10;  // of a recording
@@ -248,8 +276,7 @@ class ColumnClassifier {
     }
   }
 
-  static constexpr double held_share = 0.5;
-  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.held > held_share; }
+  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.jumps; }
 
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
@@ -265,7 +292,7 @@ class ColumnClassifier {
       if (may_be_input && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (may_be_input && c.held > held_share) {
+      } else if (may_be_input && c.jumps) {
         c.use = ColumnUse::input;
         c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
       } else {
@@ -279,9 +306,12 @@ class ColumnClassifier {
       c.measured = c.use == ColumnUse::input && is_smooth(values(i));
     }
     if (!of_use(ColumnUse::output).empty()) return;
-    ColumnSurvey& last = out_.columns[open.back()];
+    const auto unlike = std::find_if(open.rbegin(), open.rend(), [this](std::size_t i) { return !is_called_input(out_.columns[i].name); });
+    ColumnSurvey& last = out_.columns[unlike == open.rend() ? open.back() : *unlike];
     last.use = ColumnUse::output;
-    last.why = "every column looks like an input; the last is taken as the output";
+    last.measured = false;
+    last.why = fmt::format("every column looks like an input; the last{} is taken as the output",
+                           unlike == open.rend() ? "" : " that is not called like one");
   }
 
   /// An output that is another's derivative: correlated to better than 0.99 with its central difference, with a slope within 10 % of 1.
@@ -312,6 +342,28 @@ class ColumnClassifier {
       out_.remarks.push_back(
           fmt::format("column '{}': {}its numbers are taken as they are", out_.columns[i].header, not_known(not_understood_[i])));
     }
+  }
+
+  /// Units that may be something else: a subscript (V is none), the acceleration of gravity, an inlet.
+  void name_doubtful_units() {
+    std::vector<std::string> of_one_letter;
+    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
+      const ColumnSurvey& c = out_.columns[i];
+      const bool signal = c.use == ColumnUse::input || c.use == ColumnUse::output || c.use == ColumnUse::rate;
+      if (!signal) continue;
+      if (of_one_letter_[i] && c.unit != "V") of_one_letter.push_back(fmt::format("'{}' in {}", c.header, c.unit));
+      const bool acceleration = c.unit == "g" && (c.name.starts_with('a') || c.name.starts_with('A'));
+      if (acceleration) out_.remarks.push_back(fmt::format("column '{}': g is read as gram, not as 9.81 m/s^2", c.header));
+      if (c.unit == "in" && c.header.ends_with(')')) out_.remarks.push_back(fmt::format("column '{}': (in) is read as inch", c.header));
+    }
+    constexpr std::size_t most = 3;
+    if (of_one_letter.size() > most + 1) {
+      of_one_letter[most] = fmt::format("{} more", of_one_letter.size() - most);
+      of_one_letter.resize(most + 1);
+    }
+    if (!of_one_letter.empty())
+      out_.remarks.push_back("units read from the last letter of names: " + join_words(of_one_letter) +
+                             "; write one in brackets, as p_s[Pa], where it is a subscript");
   }
 
   /// With the unit that may be meant.
@@ -387,12 +439,16 @@ class ColumnClassifier {
   }
 
   std::vector<std::string> not_understood_;  ///< unit in the header, per column; empty: known, or none, or found out
+  std::vector<bool> of_one_letter_;          ///< per column: its unit is the last letter of its name
   static constexpr std::size_t longest_name = 64, longest_header = 80;  // bytes
+  static constexpr double held_share = 0.5;                             // of the samples of what jumps
+  static constexpr double min_forward_share = 0.5;                      // of a time
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   LooseTable table_;
   std::set<std::string> taken_;  // names that are reserved or given
   RecordingSurvey out_;
   const RecordingChoice& choice_;
+  bool of_log_ = false;  // the first column is its time
   std::set<std::size_t> left_out_;
   std::size_t time_ = none;
   std::vector<double> segments_;                  // the number of its recording, a value per row; empty: none

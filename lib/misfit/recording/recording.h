@@ -23,6 +23,7 @@ struct ColumnSurvey {
   double low = 0.0, high = 0.0;
   double resolution = 0.0;  ///< all values are multiples of it apart [unit]; 0: no such step found
   double held = 0.0;        ///< share of samples equal to the one before
+  bool jumps = false;       ///< held for most samples, as a command, and not a measurement whose last digit changes slowly
   bool chosen = false;      ///< its use is the user's choice
   bool measured = false;    ///< an input that is no command held between samples: it changes smoothly, or nothing in the file moves it
   std::string rate_of;      ///< rate: name of the column whose derivative it is
@@ -60,11 +61,12 @@ class ChannelsUndecided : public InputError {
 };
 
 /// Looks at a file of columns, or another log (data/log/log.h), asking nothing. Time: a column called so or in a unit of time that runs
-/// forward; inputs by name ("u", "force", "valve", …) or because they stand still between jumps; the rest are outputs, one that is the
-/// derivative of another its rate. InputError: what read_loose_csv() refuses, text among numbers, no time column, nothing that could be an
-/// output, too few rows. `reserved`: names that no input, output or rate may have ("t" is always one). A column called segment, id, run or
-/// the like splits the recording. An unknown unit of time is an InputError; so is what `choice` names and the file has not, and a log of
-/// several clocks where `choice` says nothing (ChannelsUndecided).
+/// forward ("T" without a unit where no other does); inputs by name ("u", "force", "valve", …) or because they stand still between jumps
+/// (other than steps of the last digit); the rest are outputs, one that is the derivative of another its rate. InputError: what
+/// read_loose_csv() refuses, text among numbers, no time column, nothing that could be an output, too few rows. `reserved`: names that no
+/// input, output or rate may have ("t" is always one). A column called segment, id, run or the like splits the recording, unless its
+/// numbers come again while time runs on. An unknown unit of time is an InputError; so is what `choice` names and the file has not, and a
+/// log of several clocks where `choice` says nothing (ChannelsUndecided).
 [[nodiscard]] RecordingSurvey survey_recording(const std::filesystem::path& path, const std::vector<std::string>& reserved = {},
                                                const RecordingChoice& choice = {});
 

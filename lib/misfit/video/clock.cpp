@@ -57,4 +57,17 @@ FrameClock clock_of(const std::vector<double>& timestamps, double declared) {
   return {false, 1.0 / median_interval(timestamps)};
 }
 
+long FrameNumbers::next(const std::optional<double>& time, double rate) {
+  constexpr double near_grid = 0.3;    // of a frame: how far a time may be from it (containers round to 1 ms)
+  constexpr double follow = 0.05;      // of what a time is off, per frame
+  constexpr double largest_gap = 1e5;  // frames: beyond, times are not believed
+  const double place = time ? *time * rate - drift_ : NAN, before = static_cast<double>(number_);
+  ++number_;
+  if (number_ == 0 || !(place < before + largest_gap)) return number_;
+  const long nearest = std::lround(place);
+  if (nearest > number_ && std::abs(place - static_cast<double>(nearest)) < near_grid) number_ = nearest;
+  drift_ += follow * std::clamp(place - static_cast<double>(number_), -near_grid, near_grid);
+  return number_;
+}
+
 }  // namespace misfit

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 namespace misfit {
@@ -14,5 +15,17 @@ struct FrameClock {
 /// to 1 ms); else at the rate that they themselves show (a file that was cut declares a wrong one); else variable. With fewer than three
 /// timestamps: the declared rate.
 [[nodiscard]] FrameClock clock_of(const std::vector<double>& timestamps, double declared);
+
+/// Numbers frames on the grid of a constant rate, so that the numbers of those that are missing stay free. The rate may be a little wrong
+/// (the first frames alone show it): the grid follows what its times drift against it.
+class FrameNumbers {
+ public:
+  /// Of the next frame, at `time` [s] since the first. One more than that before, where there is no time, or none near the grid.
+  [[nodiscard]] long next(const std::optional<double>& time, double rate);
+
+ private:
+  long number_ = -1;
+  double drift_ = 0.0;  ///< of the times against the grid [frames]
+};
 
 }  // namespace misfit

@@ -20,8 +20,6 @@ namespace misfit {
 namespace {
 
 constexpr std::size_t queue_length = 16;  // frames decoded ahead
-constexpr double on_grid = 0.3;        // of a frame: how far a timestamp may be from the grid of the frame rate (they are rounded to 1 ms)
-constexpr long largest_gap = 100'000;  // frames: beyond, timestamps are not believed
 
 }  // namespace
 
@@ -36,6 +34,7 @@ struct Video::State {
   std::thread thread;
   // of the decoding thread alone
   Image before = {};
+  FrameNumbers numbers;
   long number = -1;
   std::vector<double> times;  ///< of the frames that have one [s]
   long missing = 0, repeated = 0;
@@ -61,15 +60,6 @@ struct Video::State {
     return timestamp - times.front();
   }
 
-  /// Place of a frame on the grid of the frame rate. Without usable timestamps frames follow each other.
-  [[nodiscard]] long place(const std::optional<double>& time) const {
-    if (number < 0 || !time || facts.variable) return number + 1;
-    const double frames = *time * facts.rate;
-    if (!(frames < static_cast<double>(number + largest_gap))) return number + 1;
-    const long grid = std::lround(frames);
-    return grid > number && std::abs(frames - static_cast<double>(grid)) < on_grid ? grid : number + 1;
-  }
-
   /// What all timestamps say at the end.
   void set_clock() {
     const FrameClock clock = clock_of(times, facts.rate);
@@ -84,7 +74,7 @@ struct Video::State {
     if (coloured) frame.colour = ColourImage(facts.width, facts.height);
     if (!stream->next(frame.image.pixels.data(), coloured ? frame.colour.bgr.data() : nullptr)) return std::nullopt;
     frame.time = time();
-    frame.number = place(frame.time);
+    frame.number = numbers.next(facts.variable ? std::nullopt : frame.time, facts.rate);
     missing += frame.number - number - 1;
     number = frame.number;
     frame.repeated = frame.image == before;

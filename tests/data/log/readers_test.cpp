@@ -137,6 +137,18 @@ TEST(Logs, NotesWhatADamagedLogHasLost) {
   EXPECT_THAT(open_log(logs() / "appended.ulg")->log().notes, ElementsAre(HasSubstr("no message is there, up to where the log goes on")));
 }
 
+/// Not at the next byte 8, of which there are many.
+TEST(Logs, ADamagedULogGoesOnAtTheNextWholeMarkOfSynchronisation) {
+  constexpr std::size_t damage = 336, mark = 1273;  // the message behind the first mark, the second mark
+  std::ifstream in(logs() / "instances.ulg", std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(in), {}};
+  content.replace(damage, 6, "\xFF\xFF\xFF\x08\0I"s);
+  const TemporaryFolder folder;
+  const auto reader = open_log(folder.write("a.ulg", content));
+  EXPECT_THAT(reader->log().notes, ElementsAre(HasSubstr("byte 336: no message is there, up to where the log goes on " +
+                                                         std::to_string(mark - damage) + " bytes")));
+}
+
 TEST(Logs, AChannelIsFoundByItsWholeNameOrByItsEndIfThatIsTheOnlyOne) {
   const auto reader = open_log(logs() / "instances.ulg");
   const Log& log = reader->log();

@@ -31,6 +31,11 @@ class MadeUpLog : public LogReader {
     values_.push_back(x);
     return *this;
   }
+  MadeUpLog& of_the_last_topic(const std::string& name, const std::vector<double>& x, const std::string& unit) {
+    log_.channels.push_back({name, log_.channels.back().group, unit, x.size(), log_.channels.back().clock, {}});
+    values_.push_back(x);
+    return *this;
+  }
   MadeUpLog& without_time(const std::string& name, const std::vector<double>& x) {
     log_.channels.push_back({name, "", "", x.size(), std::nullopt, {}});
     values_.push_back(x);
@@ -51,9 +56,10 @@ struct Result {
   std::vector<std::string> notes;
 };
 
-Result brought(MadeUpLog& log, const std::vector<WantedChannel>& wanted, const std::optional<std::string>& time = {}) {
+Result brought(MadeUpLog& log, const std::vector<WantedChannel>& wanted, const std::optional<std::string>& time = {},
+               Rows rows = Rows::forward) {
   Result out;
-  out.table = on_one_time_base(log, wanted, time, out.notes);
+  out.table = on_one_time_base(log, wanted, time, out.notes, rows);
   return out;
 }
 
@@ -115,7 +121,27 @@ TEST(OneTimeBase, TimesThatDoNotIncreaseAreLeftOutAndCounted) {
   log.topic("a", {0, 1e5, 1e5, 0.5e5, 2e5}, {1, 2, 3, 4, 5});
   const Result r = brought(log, {{"a.x"}});
   EXPECT_THAT(r.table.columns[1].values, ElementsAre(1, 2, 5));
-  EXPECT_THAT(r.notes, ElementsAre(HasSubstr("2 of 5 samples are left out")));
+  EXPECT_THAT(r.notes, ElementsAre(testing::AllOf(HasSubstr("2 of 5 samples are left out"), HasSubstr("it runs back at sample 4"))));
+}
+
+TEST(OneTimeBase, RowsOfOneClockMayStayAsTheyWereRecorded) {
+  MadeUpLog log;
+  log.topic("a", {0, 1e5, 2e5, 0, 1e5, 2e5}, {1, 2, 3, 4, 5, 6}).topic("u", {0, 1e5}, {7, 8});
+  const Result r = brought(log, {{"a.x"}}, {}, Rows::as_recorded);
+  EXPECT_THAT(r.table.columns[0].values, ElementsAre(0.0, 0.1, 0.2, 0.0, 0.1, 0.2));
+  EXPECT_THAT(r.table.columns[1].values, ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(r.notes, IsEmpty());
+  EXPECT_EQ(brought(log, {{"a.x"}, {"u.x", Between::held}}, {}, Rows::as_recorded).table.rows(), 3U) << "of several clocks";
+}
+
+/// Both times count its rows: they are not brought from one to the other by their values.
+TEST(OneTimeBase, TheSecondTimeOfATopicIsThatOfItsRows) {
+  MadeUpLog log;
+  log.topic("a", {0, 1e5, 2e5}, {1, 2, 3}).of_the_last_topic("a.logged", {50.0, 50.1, 50.3}, "s");
+  const Result r = brought(log, {{"a.x"}}, "a.logged");
+  EXPECT_THAT(r.table.columns[0].values, ElementsAre(50.0, 50.1, 50.3));
+  EXPECT_THAT(r.table.columns[1].values, ElementsAre(1, 2, 3));
+  EXPECT_THAT(r.notes, IsEmpty());
 }
 
 TEST(OneTimeBase, WithoutATimeAsksForItByNameAndTakesIt) {

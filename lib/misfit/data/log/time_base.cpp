@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "misfit/core/column_header.h"
@@ -24,14 +26,15 @@ struct Clock {
 
 class TimeBase {
  public:
-  TimeBase(LogReader& reader, const std::vector<WantedChannel>& wanted, std::vector<std::string>& notes)
-      : reader_(reader), log_(reader.log()), wanted_(wanted), notes_(notes) {}
+  TimeBase(LogReader& reader, const std::vector<WantedChannel>& wanted, std::vector<std::string>& notes, Rows rows)
+      : reader_(reader), log_(reader.log()), wanted_(wanted), notes_(notes), rows_(rows) {}
 
   Table run(const std::optional<std::string>& time) {
     for (const WantedChannel& w : wanted_) channels_.push_back(log_.index_of(w.name));
     base_ = time ? log_.index_of(*time) : clock_of_most();
     read_channels();
-    const Clock base = time ? clock(base_) : clock_of_all();
+    const bool one_clock = std::all_of(channels_.begin(), channels_.end(), [this](std::size_t c) { return clock_of(c) == base_; });
+    const Clock base = one_clock && rows_ == Rows::as_recorded ? all_rows() : time ? clock(base_) : clock_of_all();
     if (base.t.empty()) fail("'" + name(base_) + "' has no value: no time is known");
     table_.source = log_.source;
     table_.add(time.value_or("t"), "s", base.t);
@@ -104,10 +107,11 @@ class TimeBase {
     t.erase(std::unique(t.begin(), t.end(), [&](double a, double b) { return b - a <= same; }), t.end());
   }
 
-  /// A channel without a clock has that of the base, if it has as many samples.
+  /// That of the base, which may be the second time of a group, for a channel of the same rows; and, if it has as many samples, for one
+  /// without a clock.
   [[nodiscard]] std::size_t clock_of(std::size_t channel) const {
-    const LogChannel& c = log_.channels[channel];
-    if (c.samples == log_.channels[base_].samples && (!c.clock || channel == base_)) return base_;
+    const LogChannel &c = log_.channels[channel], &base = log_.channels[base_];
+    if (c.samples == base.samples && (!c.clock || channel == base_ || c.clock == base.clock)) return base_;
     if (!c.clock) fail_without_time(c);
     return *c.clock;
   }
@@ -134,18 +138,33 @@ class TimeBase {
     if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
   }
 
-  [[nodiscard]] Clock clock(std::size_t channel) const {
+  [[nodiscard]] std::vector<double> seconds_of(std::size_t channel) const {
     std::vector<double> seconds = log_.channels[channel].values;
     convert(seconds, unit_of_time(channel), "s");
+    return seconds;
+  }
+
+  /// Of the base, as they stand in the log.
+  [[nodiscard]] Clock all_rows() const {
+    Clock out{seconds_of(base_), {}};
+    out.rows.resize(out.t.size());
+    std::iota(out.rows.begin(), out.rows.end(), 0U);
+    return out;
+  }
+
+  [[nodiscard]] Clock clock(std::size_t channel) const {
+    const std::vector<double> seconds = seconds_of(channel);
     Clock out;
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       if (!std::isfinite(seconds[i]) || (!out.t.empty() && !(seconds[i] > out.t.back()))) continue;
       out.t.push_back(seconds[i]);
       out.rows.push_back(i);
     }
-    if (out.t.size() < seconds.size())
-      note_once(fmt::format("time '{}': {} of {} samples are left out, whose time is missing or not after the one before", name(channel),
-                            seconds.size() - out.t.size(), seconds.size()));
+    if (out.t.size() == seconds.size()) return out;
+    const auto back = std::adjacent_find(seconds.begin(), seconds.end(), std::greater<>());
+    const std::string anew = back == seconds.end() ? "" : fmt::format("; it runs back at sample {}", back - seconds.begin() + 2);
+    note_once(fmt::format("time '{}': {} of {} samples are left out, whose time is missing or not after the one before{}", name(channel),
+                          seconds.size() - out.t.size(), seconds.size(), anew));
     return out;
   }
 
@@ -240,6 +259,7 @@ class TimeBase {
   const Log& log_;
   const std::vector<WantedChannel>& wanted_;
   std::vector<std::string>& notes_;
+  Rows rows_;
   std::vector<std::size_t> channels_;                                         // of each wanted one
   std::vector<std::size_t> inputs_;                                           // columns of inputs that were brought from another clock
   std::map<std::pair<std::size_t, bool>, std::vector<std::string>> brought_;  // held or linear channels, by samples
@@ -251,8 +271,8 @@ class TimeBase {
 }  // namespace
 
 Table on_one_time_base(LogReader& reader, const std::vector<WantedChannel>& wanted, const std::optional<std::string>& time,
-                       std::vector<std::string>& notes) {
-  return TimeBase(reader, wanted, notes).run(time);
+                       std::vector<std::string>& notes, Rows rows) {
+  return TimeBase(reader, wanted, notes, rows).run(time);
 }
 
 std::string known_unit(const LogChannel& channel) {

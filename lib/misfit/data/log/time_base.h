@@ -23,13 +23,19 @@ struct WantedChannel {
   Between between = Between::nearest;
 };
 
+/// Which samples of a clock become rows.
+enum class Rows {
+  forward,      ///< those whose time is known and after the one before
+  as_recorded,  ///< all, where every wanted channel is of the one clock: time may run back, from one run to the next
+};
+
 /// Time in seconds (column `time`, or "t"), then the wanted channels in their own units. The time base is the clock `time`, if that is
 /// given (`nearest` channels of other clocks then stand at the nearest of its times), else that of the `nearest` channels; if they have
 /// several, the times of all, and of held inputs. What was done to channels of other clocks, and how many samples were left out and why, is
 /// said in `notes`. InputError: no such channel (with the nearest names), a channel without a
 /// time, a time whose unit is none of time.
 [[nodiscard]] Table on_one_time_base(LogReader& reader, const std::vector<WantedChannel>& wanted, const std::optional<std::string>& time,
-                                     std::vector<std::string>& notes);
+                                     std::vector<std::string>& notes, Rows rows = Rows::forward);
 
 /// The unit of a channel as units.h reads it, from the file or the end of its name; empty if neither gives one that is known.
 [[nodiscard]] std::string known_unit(const LogChannel& channel);

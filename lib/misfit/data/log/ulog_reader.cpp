@@ -14,7 +14,7 @@ namespace misfit {
 namespace {
 
 constexpr std::size_t file_head = 16, message_head = 3;
-constexpr std::string_view sync_message = "\x08\x00S\x2F\x73\x13\x20\x25\x0C\xBB\x12";
+constexpr std::string_view sync_message("\x08\x00S\x2F\x73\x13\x20\x25\x0C\xBB\x12", 11);  // with its zero byte
 constexpr std::string_view known_messages = "BFIMPQARDLCSO";
 
 struct Basic {

@@ -46,7 +46,8 @@ MarkerDetections detections_in_video(const SweepPicture& picture, const Marker& 
   MarkerDetections out;
   std::vector<double> count;
   while (const auto frame = video.next()) {
-    const double t = static_cast<double>(frame->number) / video.facts().rate;
+    const VideoFacts& facts = video.facts();
+    const double t = facts.variable && frame->time ? *frame->time : static_cast<double>(frame->number) / facts.rate;
     if (picture.from && t < *picture.from) continue;
     if (picture.to && t > *picture.to) break;
     MarkerDetections now;
