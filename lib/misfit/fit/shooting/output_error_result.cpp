@@ -8,6 +8,7 @@
 #include <string>
 
 #include "misfit/core/display.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
@@ -38,7 +39,29 @@ std::vector<std::vector<double>> channel_residuals(const EndOfSearch& end, std::
 
 struct Squares {
   double sum = 0.0, count = 0.0;
+  [[nodiscard]] double rms() const { return std::sqrt(sum / std::max(count, 1.0)); }
 };
+
+/// Measurements of output o, NaN where they do not count.
+std::vector<double> counted_values(const Signals& experiment, std::size_t o) {
+  std::vector<double> out = o < experiment.measured.size() ? experiment.measured[o].values : std::vector<double>{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (i < experiment.exclude || experiment.held_out(i)) out[i] = std::nan("");
+  }
+  return out;
+}
+
+/// The motion that output o shows, of all experiments: deviations of the measurements that count from their mean in the experiment.
+Squares motion_of(const std::vector<Signals>& experiments, std::size_t o) {
+  Squares out;
+  for (const Signals& experiment : experiments) {
+    const std::vector<double> values = counted_values(experiment, o);
+    const auto count = static_cast<double>(count_finite(values));
+    out.sum += count * std::pow(standard_deviation(values), 2);
+    out.count += count;
+  }
+  return out;
+}
 
 Squares squares_of(const std::vector<std::vector<double>>& residuals) {
   Squares out;
@@ -219,17 +242,19 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
 }
 
 bool segments_follow(Shooting& shooting, const std::vector<Signals>& experiments) {
+  constexpr double of_noise = 3.0;  // sigma: what is no larger says nothing against the model, however little an output shows
   const std::vector<RowMatrix> y = shooting.predict_segments();
-  for (std::size_t e = 0; e < y.size(); ++e) {
-    for (std::size_t o = 0; o < shooting.sigma().size(); ++o) {
-      double squares = 0.0, count = 0.0;
+  for (std::size_t o = 0; o < shooting.sigma().size(); ++o) {
+    Squares residuals;
+    for (std::size_t e = 0; e < y.size(); ++e) {
       for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
         if (!shooting.counts(e, i, o)) continue;
-        squares += std::pow(y[e](i, o) - experiments[e].measured[o].values[i], 2);
-        count += 1.0;
+        residuals.sum += std::pow(y[e](i, o) - experiments[e].measured[o].values[i], 2);
+        residuals.count += 1.0;
       }
-      if (!(std::sqrt(squares / std::max(count, 1.0)) <= standard_deviation(experiments[e].measured[o].values))) return false;
     }
+    const double most = std::max(motion_of(experiments, o).rms(), of_noise * shooting.sigma()[o]);
+    if (!(residuals.rms() <= most)) return false;
   }
   return true;
 }

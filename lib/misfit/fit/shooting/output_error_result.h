@@ -39,7 +39,8 @@ void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, 
 /// fit.noise.
 void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 
-/// Do the segments of the last solve predict better than a constant would? If not, what the solver reached is no start for longer ones.
+/// Do the segments of the last solve predict every output better than a constant per experiment would, or to three sigmas of its noise? If
+/// not, what the solver reached is no start for longer ones. Over all experiments together: one at rest shows nothing to be followed.
 [[nodiscard]] bool segments_follow(Shooting& shooting, const std::vector<Signals>& experiments);
 
 /// Minus the log-likelihood of the residuals with each channel's noise at its maximum, but for constants.
