@@ -34,5 +34,14 @@ TEST(SeveralOutputs, OneThatShowsNothingButAConstantDoesNotLoseTheMotion) {
   expect_right(fitted(text, {both}).fit);
 }
 
+/// A ripple that the model lacks, 7 % of the motion where there is motion, ten times what the experiment at rest shows.
+TEST(SeveralExperiments, WhatTheModelLeavesOfThemIsComparedWithTheMotionOfAll) {
+  Signals moves = record("moves", 1.0, 2);
+  for (std::size_t i = 0; i < moves.samples(); ++i) moves.measured[0].values[i] += 0.05 * std::sin(3.0 * moves.t[i]);
+  const Fit fit = fitted(one_output, {record("rest", 0.0, 1, 0.0), moves}).fit;
+  EXPECT_EQ(fit.status, FitStatus::converged) << fit.message;
+  EXPECT_TRUE(fit.coloured);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -402,7 +402,7 @@ class Estimator {
     warn_of_other_noise(out.model, fit);
     fit.warnings.insert(fit.warnings.end(), other_maxima_.begin(), other_maxima_.end());
     const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
-    classify_motion(out.model, {setting_, unknowns, regression_says_driven_}, fit);
+    classify_motion(out.model, {setting_, experiments_, unknowns, regression_says_driven_}, fit);
     reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
     if (end.degrees() < kFewestDegrees && !out.model.noise_held()) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }

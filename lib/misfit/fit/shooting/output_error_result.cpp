@@ -63,6 +63,20 @@ Squares motion_of(const std::vector<Signals>& experiments, std::size_t o) {
   return out;
 }
 
+/// White noise of output o, of all experiments in which it counts; NaN where none tells.
+double noise_of(const std::vector<Signals>& experiments, std::size_t o) {
+  Squares out;
+  for (const Signals& experiment : experiments) {
+    const auto count = static_cast<double>(count_finite(counted_values(experiment, o)));
+    if (count == 0.0) continue;
+    const double noise = measurement_noise(experiment.measured[o].values);
+    if (!std::isfinite(noise)) continue;
+    out.sum += count * noise * noise;
+    out.count += count;
+  }
+  return out.count > 0.0 ? out.rms() : std::nan("");
+}
+
 Squares squares_of(const std::vector<std::vector<double>>& residuals) {
   Squares out;
   for (const auto& series : residuals) {
@@ -271,9 +285,9 @@ double misfit_of(const EndOfSearch& end) {
 std::string why_undetermined(const std::string& which, std::string unsettled, const EndOfSearch& end) {
   const auto& outputs = end.shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
-    const auto [squares, count] = squares_of(channel_residuals(end, o));
-    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = standard_deviation(end.experiments.front().measured[o].values);
-    if (rms < follows * size) continue;
+    const Squares residuals = squares_of(channel_residuals(end, o));
+    const double rms = residuals.rms(), size = motion_of(end.experiments, o).rms();
+    if (residuals.count == 0.0 || rms < follows * size) continue;
     unsettled = "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
                 ", motion RMS " + in_display_unit(size, outputs[o].unit) + ")";
     break;
@@ -285,13 +299,14 @@ std::string why_undetermined(const std::string& which, std::string unsettled, co
 
 namespace {
 
-/// Of a channel's estimation part in all experiments, on an even grid.
+/// Of a channel's measurements that count in all experiments, on an even grid.
 std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
   std::vector<std::vector<double>> all;
   for (const auto& p : fit.predictions) {
     if (p.channel != channel) continue;
     std::vector<double> residuals;
-    for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
+    for (std::size_t i = 0; i < p.t.size(); ++i)
+      residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
     all.push_back(on_even_grid(p.t, residuals));
   }
   return joined_series(all);
@@ -313,14 +328,17 @@ void warn_of_other_noise(const Model& model, Fit& fit) {
 }
 
 void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
-  const auto& [setting, unknowns, driven] = motion;
-  const ChannelPrediction& p = fit.predictions.front();
+  const auto& [setting, experiments, unknowns, driven] = motion;
+  const auto& outputs = model.system->spec().outputs;
+  const auto shown = std::find_if(outputs.begin(), outputs.end(), [&](const OutputSpec& o) { return fit.rms.contains(o.name); });
+  if (shown == outputs.end()) return;
+  const std::size_t o = shown - outputs.begin();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
-  const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
-  const double noise = measurement_noise(p.measured), rms = fit.rms.at(p.channel).value, size = standard_deviation(p.measured);
-  fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
-  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
-                           ", measurement noise about " + in_display_unit(noise, p.unit);
+  const WhitenessTest test = whiteness(residuals_of(shown->name, fit), 1, std::max(6, half_period), unknowns);
+  const double noise = noise_of(experiments, o), rms = fit.rms.at(shown->name).value, size = motion_of(experiments, o).rms();
+  fit.facts["whiteness"] = "residuals of " + shown->name + " at " + in_words(test);
+  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, shown->unit) + ", motion RMS " + in_display_unit(size, shown->unit) +
+                           ", measurement noise about " + in_display_unit(noise, shown->unit);
   constexpr double clearly_above_noise = 2.0;
   const bool above_noise = rms > clearly_above_noise * noise, coloured = looks_driven(test) && above_noise;
   fit.driven = above_noise && driven.value_or(coloured);

@@ -56,10 +56,12 @@ void warn_of_other_noise(const Model& model, Fit& fit);
 
 struct MotionFacts {
   const Setting& setting;
+  const std::vector<Signals>& experiments;
   double unknowns = 0.0;       ///< per channel
   std::optional<bool> driven;  ///< by the regression, where there is one: so that all methods say the same
 };
-/// Says whether a deterministic model followed the motion, and marks the fit where it did not.
+/// Says whether a deterministic model followed the motion of the first output that counts, all experiments together, and marks the fit
+/// where it did not.
 void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit);
 
 }  // namespace misfit::output_error_parts
