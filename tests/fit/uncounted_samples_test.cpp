@@ -19,5 +19,19 @@ TEST(UncountedSamples, OfTheFirstOutputAloneLeaveTheFitToTheOther) {
   EXPECT_NE(fit.facts.at("explained").find("residual RMS"), std::string::npos);
 }
 
+/// While the recorder starts, it shows something else than the motion.
+TEST(UncountedSamples, OfTheBeginningAreNotInTheTestOfWhiteness) {
+  Signals s = record("e", 1.0, 2);
+  s.exclude = 60;
+  for (std::size_t i = 0; i < s.exclude; ++i) s.measured[0].values[i] += 0.2 * std::sin(0.8 * s.t[i]);
+  const Fit fit = fitted(one_output, {s}).fit;
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  EXPECT_FALSE(fit.coloured) << fit.facts.at("whiteness");
+  EXPECT_FALSE(fit.driven);
+  Signals without = s;
+  for (std::size_t i = 0; i < s.exclude; ++i) without.measured[0].values[i] = std::nan("");
+  EXPECT_EQ(fit.facts.at("whiteness"), fitted(one_output, {without}).fit.facts.at("whiteness"));
+}
+
 }  // namespace
 }  // namespace misfit

@@ -300,13 +300,14 @@ std::string why_undetermined(const std::string& which, std::string unsettled, co
 namespace {
 
 /// Of a channel's measurements that count in all experiments, on an even grid.
-std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
+std::vector<double> residuals_of(const std::string& channel, const std::vector<Signals>& experiments, const Fit& fit) {
   std::vector<std::vector<double>> all;
   for (const auto& p : fit.predictions) {
     if (p.channel != channel) continue;
+    const std::size_t exclude = experiments[all.size()].exclude;
     std::vector<double> residuals;
     for (std::size_t i = 0; i < p.t.size(); ++i)
-      residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
+      residuals.push_back(i < exclude || p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
     all.push_back(on_even_grid(p.t, residuals));
   }
   return joined_series(all);
@@ -334,7 +335,7 @@ void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
   if (shown == outputs.end()) return;
   const std::size_t o = shown - outputs.begin();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
-  const WhitenessTest test = whiteness(residuals_of(shown->name, fit), 1, std::max(6, half_period), unknowns);
+  const WhitenessTest test = whiteness(residuals_of(shown->name, experiments, fit), 1, std::max(6, half_period), unknowns);
   const double noise = noise_of(experiments, o), rms = fit.rms.at(shown->name).value, size = motion_of(experiments, o).rms();
   fit.facts["whiteness"] = "residuals of " + shown->name + " at " + in_words(test);
   fit.facts["explained"] = "residual RMS " + in_display_unit(rms, shown->unit) + ", motion RMS " + in_display_unit(size, shown->unit) +
