@@ -37,6 +37,7 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, Shootin
       for (std::size_t o = 0; o < static_cast<std::size_t>(model_.outputs()); ++o) any = any || counts(e, i, o);
     }
     held_out_.push_back(!any);
+    if (any && !experiments_[e].after_gap && !shared_with_) shared_with_ = e;
   }
 }
 
