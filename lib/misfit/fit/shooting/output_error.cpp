@@ -322,7 +322,10 @@ class Estimator {
   }
 
   std::string singular_message(const NormalEquations& linearised) {
-    const std::string which = linearised.N.size() > 0 ? undetermined(shooting_.model(), linearised) : "";
+    const Model& model = shooting_.model();
+    std::string which = linearised.N.size() > 0 ? undetermined(model, linearised) : "";
+    if (which.empty() && linearised.N.size() > 0)
+      which = undetermined_starts(model, precision_of(linearised, penalties_, 1.0), experiments_);
     return at_the_end(which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which);
   }
 

@@ -41,7 +41,7 @@ void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& piec
   const std::size_t n = model_.states();
   for (const Piece& piece : pieces) {
     if (piece.first != 0) continue;
-    for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
+    for (std::size_t j = 0; j < n; ++j) {
       const std::optional<double> known = known_start(piece.experiment, j);
       const bool tied = shared_start(piece.experiment, j) && piece.block != with;
       if (!known && !tied) continue;
@@ -68,7 +68,7 @@ void Shooting::hold_initial(NormalEquations& out) const {
   const auto columns = std::ssize(free_);
   const Eigen::Index n = model_.states();
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
-    for (std::size_t j = 0; j < model_.state_specs.size(); ++j) {
+    for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
       const auto place_in = [&](std::size_t of) { return columns + n * static_cast<Eigen::Index>(of) + static_cast<Eigen::Index>(j); };
       const Eigen::Index own = place_in(e), with = place_in(shared_with_.value_or(e));
       const double weight = holding(j);
