@@ -150,6 +150,11 @@ int add_parameters(LeastSquares& problem, const Model& model, const std::vector<
     upper.push_back(p.curve >= 0 ? infinite : std::min(p.upper, beyond));
     bounded = bounded || p.curve < 0;
   }
+  if (theta.empty()) {  // initial states alone are looked for: Ceres knows no empty block
+    const int nothing = problem.add_block({0.0});
+    problem.fix_block(nothing);
+    return nothing;
+  }
   return bounded ? problem.add_block(theta, lower, upper) : problem.add_block(theta);
 }
 
@@ -210,7 +215,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   std::optional<Unhurried> writing_up;
   if (summary.out_of_time) writing_up.emplace();
   const std::vector<double>& solved = problem.block(theta_block);
-  model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(solved)));
+  model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(free_)));
   set_theta(solved.data());
   remember(pieces, problem);
   return summary;
