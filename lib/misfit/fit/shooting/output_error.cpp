@@ -403,6 +403,7 @@ class Estimator {
     warn_of_collinearity(out.model, covariance.topLeftCorner(columns, columns), fit);
     warn_of_other_trims(fit);
     warn_of_other_noise(out.model, fit);
+    warn_of_unknown_noise({shooting_, end.runs, experiments_}, end.smoothed.edf, fit);
     fit.warnings.insert(fit.warnings.end(), other_maxima_.begin(), other_maxima_.end());
     const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
     classify_motion(out.model, {setting_, experiments_, unknowns, regression_says_driven_}, fit);

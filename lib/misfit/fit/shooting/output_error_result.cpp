@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "misfit/core/display.h"
@@ -87,17 +88,49 @@ Squares squares_of(const std::vector<std::vector<double>>& residuals) {
   return out;
 }
 
+/// Residuals of every output.
+std::vector<Squares> residuals_of_outputs(const EndOfSearch& end) {
+  std::vector<Squares> out;
+  for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) out.push_back(squares_of(channel_residuals(end, o)));
+  return out;
+}
+
+/// Noise of every output by its residuals, which lose their share of the parameters; nullopt where they are too few, or 0.
+std::vector<std::optional<double>> noise_by_residuals(const std::vector<Squares>& residuals, double edf) {
+  double all = 0.0;
+  for (const Squares& of : residuals) all += of.count;
+  std::vector<std::optional<double>> out;
+  for (const auto& [squares, count] : residuals) {
+    const double share = edf * count / std::max(all, 1.0);
+    const bool enough = count > share + 1.0 && squares > 0.0;
+    out.push_back(enough ? std::optional(std::sqrt(squares / (count - share))) : std::nullopt);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> channel_sigmas(const EndOfSearch& end, double edf) {
   std::vector<double> sigma = end.shooting.sigma();
-  const double share = edf / static_cast<double>(sigma.size());
+  const std::vector<std::optional<double>> found = noise_by_residuals(residuals_of_outputs(end), edf);
   for (std::size_t o = 0; o < sigma.size(); ++o) {
-    if (end.shooting.model().known_noise[o].fixed) continue;
-    const auto [squares, count] = squares_of(channel_residuals(end, o));
-    if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
+    if (!end.shooting.model().known_noise[o].fixed) sigma[o] = found[o].value_or(sigma[o]);
   }
   return sigma;
+}
+
+void warn_of_unknown_noise(const EndOfSearch& end, double edf, Fit& fit) {
+  const Model& model = end.shooting.model();
+  const auto& outputs = model.system->spec().outputs;
+  const std::vector<Squares> residuals = residuals_of_outputs(end);
+  const std::vector<std::optional<double>> found = noise_by_residuals(residuals, edf);
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    if (model.known_noise[o].fixed || found[o]) continue;
+    const auto in_unit = [&](double value) { return in_display_unit(value, outputs[o].unit); };
+    fit.warnings.push_back("the noise of " + outputs[o].name +
+                           " could not be estimated (measurements that count: " + format_value(residuals[o].count) + ", residual RMS " +
+                           in_unit(residuals[o].rms()) + "): it stands at the first guess, " + in_unit(end.shooting.sigma()[o]));
+  }
 }
 
 /// RMS of a channel's residuals in units of its sigma where that is held, so that only their correlation counts; else 1.

@@ -15,8 +15,11 @@ struct EndOfSearch {
   const std::vector<Signals>& experiments;
 };
 
-/// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
+/// Per-channel residuals of the estimation part → standard deviations, the effective number of parameters taken off the measurements, of
+/// each output by its share of them. Where nothing is left, and where the noise is held, the shooting's own.
 [[nodiscard]] std::vector<double> channel_sigmas(const EndOfSearch& end, double edf);
+/// Where nothing is left of a free noise: a warning.
+void warn_of_unknown_noise(const EndOfSearch& end, double edf, Fit& fit);
 
 /// Residuals and their derivatives by (parameters, initial states of each experiment) in units of sigma, from runs with derivatives; the
 /// residuals of an output whose noise is held in units of their own RMS.
