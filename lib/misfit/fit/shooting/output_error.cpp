@@ -147,7 +147,8 @@ class Estimator {
 
   /// The model follows the motion over short segments only.
   FittedModel lost(const ShootingPass& pass) {
-    const std::string span = format_value(std::round(100.0 * static_cast<double>(pass.length) * setting_.step) / 100.0);
+    const double seconds = static_cast<double>(pass.length) * setting_.step, digit = std::pow(10.0, std::floor(std::log10(seconds)) - 2.0);
+    const std::string span = format_value(std::round(seconds / digit) * digit);
     const std::string stop = "longer segments diverge or predict worse than a constant would";
     shooting_.forget_failure();
     const std::string what =

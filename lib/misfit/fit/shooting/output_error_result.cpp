@@ -219,11 +219,30 @@ void set_noise(const Shooting& shooting, const std::vector<Signals>& experiments
   }
 }
 
+namespace {
+
+/// Where the initial state of an experiment that is held out as a whole comes from.
+std::string start_in_words(const Shooting& shooting, std::size_t experiment) {
+  const Model& model = shooting.model();
+  const std::size_t of_system = model.state_specs.size(), states = model.states();
+  std::vector<std::string> read;
+  for (std::size_t j = 0; j < states; ++j) {
+    if (!shooting.read_from_samples(experiment, j)) continue;
+    read.push_back(j < of_system ? model.state_specs[j].name : model.own_state_names[j - of_system]);
+  }
+  if (read.size() == states) return "its initial state is taken from its first samples";
+  if (read.empty()) return "its initial state is the one that is fixed, or shared with the others";
+  return "of its initial state " + join_words(read) + (read.size() > 1 ? " are" : " is") +
+         " taken from its first samples, the rest is fixed or shared with the others";
+}
+
+}  // namespace
+
 void set_initial_states(const Shooting& shooting, const std::vector<Signals>& experiments, FittedModel& out) {
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     out.initial_states.push_back(shooting.initial_state(e));
     if (shooting.held_out(e))
-      out.fit.facts["held out: " + experiments[e].name] = "all its samples are held out: its initial state is taken from its first samples";
+      out.fit.facts["held out: " + experiments[e].name] = "all its samples are held out: " + start_in_words(shooting, e);
   }
 }
 

@@ -30,7 +30,7 @@ void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, F
 
 /// Noise of every output with its standard error from `degrees` of freedom in all, of which each has its share of the measurements.
 void set_noise(const Shooting& shooting, const std::vector<Signals>& experiments, double degrees, Fit& fit);
-/// Of every experiment, and which of them are taken from samples that are all held out.
+/// Of every experiment, and where those of experiments come from whose samples are all held out.
 void set_initial_states(const Shooting& shooting, const std::vector<Signals>& experiments, FittedModel& out);
 /// Why no sigma is given.
 [[nodiscard]] std::string too_few(double count, double unknowns);

@@ -218,6 +218,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(free_)));
   set_theta(solved.data());
   remember(pieces, problem);
+  failure_.clear();  // of points that were tried on the way
   return summary;
 }
 
