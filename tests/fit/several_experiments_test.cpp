@@ -21,7 +21,7 @@ TEST(SeveralExperiments, OneAtRestWhoseSensorShowsAConstantDoesNotLoseTheOthers)
 
 TEST(SeveralExperiments, OneAtRestWithABiasDoesNotLoseTheOthers) {
   Signals rest = record("rest", 0.0, 1, 0.0);
-  for (double& v : rest.measured[0].values) v += 0.15;
+  for (double& v : rest.measured[0].values) v += 0.08;
   const Fit fit = fitted(one_output, {record("moves", 1.0, 2), rest}).fit;
   EXPECT_EQ(fit.status, FitStatus::converged) << fit.message;
 }
