@@ -144,6 +144,26 @@ TEST(Gaps, AFixedInitialStateHoldsForTheFirstPartOnly) {
   EXPECT_NEAR(std::stod(fitted.fit.facts.at("effective_parameters")), 3.0, 1e-3) << "a, b and one initial state";
 }
 
+/// What stands first goes on after a gap: the others share a state that is not its.
+TEST(Gaps, ASharedInitialStateIsNotThatOfAFirstPartAfterAGap) {
+  const auto known = registry_with(first_order_text);
+  ModelRequest request = request_of("text");
+  request.initial["x"] = {Initial::shared, std::nullopt, {}};
+  const Model model = assemble(request, *known);
+  Signals late = first_order(0.0), one = first_order(0.0), two = first_order(0.0);
+  late.after_gap = true;
+  for (std::size_t i = 0; i < late.samples(); ++i) late.measured[0].values[i] += 2.0 * std::exp(-late.t[i]);
+  for (Signals* s : {&one, &two}) {
+    for (std::size_t i = 0; i < s->samples(); ++i) s->measured[0].values[i] += (s == &one ? 0.3 : -0.3) * std::exp(-s->t[i]);
+  }
+  const std::vector<Signals> experiments{late, one, two};
+  const FittedModel fitted = output_error(equation_error(model, experiments), experiments);
+  ASSERT_EQ(fitted.fit.status, FitStatus::converged) << fitted.fit.message;
+  EXPECT_NEAR(fitted.initial_states[0][0], 2.5, 0.2);
+  EXPECT_NEAR(fitted.initial_states[1][0], 0.5, 0.1) << "in the middle of both";
+  EXPECT_NEAR(fitted.initial_states[2][0], fitted.initial_states[1][0], 1e-6);
+}
+
 TEST(EffectiveParameters, SharedInitialStatesAreOneUnknown) {
   const auto known = registry_with(first_order_text);
   ModelRequest request = request_of("text");

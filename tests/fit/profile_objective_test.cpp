@@ -13,6 +13,7 @@
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/inference/curves.h"
 #include "tests/fit/cart_filter.h"
+#include "tests/fit/decay.h"
 #include "tests/fit/planar_model.h"
 
 namespace misfit {
@@ -156,6 +157,19 @@ TEST(OutputErrorSigmas, OfWhiteResidualsAreNearlyThePlainOnes) {
     if (name == "trim" || !(plain > 0.0)) continue;
     EXPECT_NEAR(f.fit.parameters.at(name).sigma / plain, 1.0, 0.25) << name;
   }
+}
+
+TEST(ProfileObjective, OfTheOnlyFreeParameterOfOutputErrorIsThatOfTheInitialStateAndTheNoise) {
+  const auto known = testing_decay::registry_with(testing_decay::decay_text);
+  const std::vector<Signals> experiments{testing_decay::decay(300, 4)};
+  const Model model = assemble(testing_decay::request_of("text"), *known);
+  FittedModel fit = output_error(equation_error(model, experiments), experiments);
+  ASSERT_EQ(fit.fit.status, FitStatus::converged) << fit.fit.message;
+  const double best = fit.fit.parameters.at("a").value, sigma = fit.fit.plain_sigmas.at("a");
+  ProfileObjective held({"output_error", std::move(fit), {}, {}, {}}, experiments, "a");
+  const std::optional<double> at_best = held(best), beside = held(best + 2.0 * sigma);
+  ASSERT_TRUE(at_best && beside);
+  EXPECT_NEAR(2.0 * (*at_best - *beside), 4.0, 0.2);
 }
 
 TEST(ProfileObjective, WrongNamesAndMethodsAreSaid) {

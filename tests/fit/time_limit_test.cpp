@@ -116,6 +116,7 @@ TEST(TimeLimit, OutputErrorEndsWithItsBestPoint) {
   const Decay decay;
   const Fit whole = decay.fit().fit;
   ASSERT_EQ(whole.status, FitStatus::converged) << whole.message;
+  EXPECT_THAT(whole.facts.at("integration"), HasSubstr("no estimate would move by more than"));
   for (const int iterations : {1, 2, 5}) {
     const CutOff cut(iterations);
     const Fit fit = decay.fit().fit;
@@ -124,6 +125,7 @@ TEST(TimeLimit, OutputErrorEndsWithItsBestPoint) {
     EXPECT_THAT(fit.message, StartsWith(std::string(limit_of_20_s) + " at a sum of squares of "));
     EXPECT_TRUE(fit.parameters.contains("a"));
     EXPECT_FALSE(fit.predictions.empty());
+    EXPECT_THAT(fit.facts.at("integration"), HasSubstr("not checked at the estimate"));
   }
 }
 

@@ -33,6 +33,20 @@ TEST(TrajectoryStart, OfADrivenFlightHasItsStaticCurveAndNoDamping) {
   EXPECT_TRUE(all_zero(of_curve(start.from.model, "C_mq")));
 }
 
+TEST(TrajectoryStart, OfADrivenFlightKeepsTheDampingThatTheStudyHolds) {
+  const std::vector<Signals> flights{testing_flight::fly(20.0, 3)};
+  Model asked = assemble(testing_flight::request_for(flights), testing_flight::registry());
+  const Curve& damping = *asked.find_curve("C_mq");
+  for (int i = 0; i < damping.spline.size(); ++i) {
+    Parameter& p = asked.parameters[static_cast<std::size_t>(damping.first + i)];
+    p.value = -0.1;
+    p.free = false;
+  }
+  const TrajectoryStart start = trajectory_start(asked, flights);
+  ASSERT_TRUE(start.regressed && start.from.fit.driven);
+  EXPECT_THAT(of_curve(start.from.model, "C_mq"), testing::Each(-0.1));
+}
+
 TEST(TrajectoryStart, OfAFreeMotionKeepsItsDamping) {
   const std::vector<Signals> motion{testing_planar::validation_signals()};
   ModelRequest request = testing_planar::eq_8();

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <tuple>
 
-#include "tests/model/requests.h"
+#include "tests/model/declared_texts.h"
 
 namespace misfit {
 namespace {
@@ -78,6 +80,72 @@ TEST_P(CartWithAClock, ReadsOneOutputAtItsOwnTimeAndTheOtherNot) {
 INSTANTIATE_TEST_SUITE_P(EarlyAndLate, CartWithAClock, testing::Values(0.03, 0.07, 0.18, -0.02, -0.11, 0.0), [](const auto& p) {
   return (p.param < 0.0 ? "late_" : "early_") + std::to_string(std::lround(std::abs(p.param) * 1e3)) + "_ms";
 });
+
+/// A strain gauge that feels the force as well as the position, behind a clock of its own.
+std::string gauge(const std::string& hold) {
+  return R"toml([states]
+x = { unit = "m", scale = 1.0 }
+v = { unit = "m/s", rate_of = "x" }
+[inputs]
+force = { unit = "N", hold = ")toml" +
+         hold + R"toml(" }
+[parameters]
+mass = { unit = "kg", value = 2.0 }
+stiffness = { unit = "N/m", value = 30.0 }
+gain = { unit = "V/m", value = 3.0 }
+share = { unit = "V/N^2", value = 0.02, free = true }
+[equations]
+x = "v"
+v = "(force - stiffness*x)/mass"
+[outputs]
+strain = { unit = "V", formula = "gain*x + share*force^2", noise = 0.01 }
+)toml";
+}
+
+class OutputWithFeedthrough : public testing::TestWithParam<std::tuple<const char*, double>> {};
+
+/// Within an interval, several samples off, and beyond both ends of the record.
+TEST_P(OutputWithFeedthrough, MovesWithItsTimeAsDifferencesSay) {
+  const auto& [hold, offset] = GetParam();
+  const auto known = registry_with(gauge(hold));
+  ModelRequest request = request_of("text", {effect("sensor_clock", {{"time_of_output", "sample_time"}})});
+  request.parameters["sensor_offset"].free = true;
+  request.parameters["clock_rate"].free = true;
+  Model model = assemble(request, *known);
+  const auto place = static_cast<std::size_t>(model.find_parameter("sensor_offset"));
+  Signals signals;
+  signals.name = "gauge";
+  signals.measured = {{"strain", "V", std::vector<double>(samples, 0.0)}};
+  signals.inputs = {{"force", "N", {}}};
+  for (int k = 0; k < samples; ++k) {
+    signals.t.push_back(step * k);
+    signals.inputs[0].values.push_back(3.0 * std::sin(1.7 * k) + std::cos(0.3 * k));
+  }
+  const InputTable inputs = input_table(signals, model);
+  const std::vector<double> x0 = {0.2, -0.4};
+  const auto run_at = [&](double value, bool sensitivities) {
+    model.parameters[place].value = value;
+    Stepper stepper(model);
+    Segment run;
+    run_segment({stepper, signals, inputs}, {0, samples, x0.data(), sensitivities}, run);
+    EXPECT_TRUE(run.finite);
+    return run;
+  };
+  constexpr double beside = 1e-5;
+  const Segment run = run_at(offset, true), before = run_at(offset - beside, false), after = run_at(offset + beside, false);
+  const std::vector<int> free = model.free_parameters();
+  const auto column = std::find(free.begin(), free.end(), static_cast<int>(place)) - free.begin();
+  for (int k = 0; k < samples; ++k)
+    EXPECT_NEAR(run.y_rows(k, column), (after.y(k, 0) - before.y(k, 0)) / (2.0 * beside), 1e-5) << k;  // of some 10 V/s
+}
+
+INSTANTIATE_TEST_SUITE_P(StraightAndHeld, OutputWithFeedthrough,
+                         testing::Combine(testing::Values("first_order", "zero_order"), testing::Values(0.007, 0.113, -0.013)),
+                         [](const auto& p) {
+                           const double offset = std::get<1>(p.param);
+                           return std::string(std::get<0>(p.param)) + (offset < 0.0 ? "_late_" : "_early_") +
+                                  std::to_string(std::lround(std::abs(offset) * 1e3)) + "_ms";
+                         });
 
 TEST(SensorClock, IsRefusedAtWhatIsNoTimeOfAnOutput) {
   EXPECT_THROW(static_cast<void>(assemble(cart({effect("sensor_clock", {{"time_of_output", "sample_time_speed"}})}), registry())),

@@ -66,7 +66,8 @@ Estimation run_output_error(const EstimationTask& task) {
   options.from_regression = start.regressed;
   out.at.fitted = output_error(start.from, task.experiments, options);
   if (out.at.fitted.fit.status != FitStatus::failed || !start.regressed) return out;
-  FittedModel own = output_error({{}, task.model, curve_penalties(task.model), {}}, task.experiments);
+  options.from_regression = false;
+  FittedModel own = output_error({{}, task.model, curve_penalties(task.model), {}}, task.experiments, options);
   if (!own.fit.usable()) return out;
   own.fit.warnings.push_back(begun_at_own_values(out.at.fitted.fit.message));
   out.at.fitted = std::move(own);

@@ -6,10 +6,14 @@
 namespace misfit {
 namespace {
 
+/// As far as it is free: what the study holds stays.
 void damping_to_zero(Model& model) {
   const Curve* damping = model.find_curve(model.system->spec().damping_curve);
   if (damping == nullptr) return;
-  for (int i = 0; i < damping->spline.size(); ++i) model.parameters[damping->first + i].value = 0.0;
+  for (int i = 0; i < damping->spline.size(); ++i) {
+    Parameter& p = model.parameters[damping->first + i];
+    if (p.free) p.value = 0.0;
+  }
 }
 
 /// Equation error with the parameters of `kept` held where `asked` has them, and free again afterwards.

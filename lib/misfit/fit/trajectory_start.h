@@ -17,8 +17,8 @@ struct TrajectoryStart {
 
 /// Equation error with every free shape (a clock angle, a frequency) held where the study puts it: linear, so that no start is lost in a
 /// valley of another shape. The parameters are then as free as in `asked`. Of a regression on driven motion only the static curve means
-/// something (lib/misfit/README.md, 5.2): its damping curve starts at 0. `whole`: gives equation_error() of the same where somebody has it;
-/// called only where no shape is free.
+/// something (lib/misfit/README.md, 5.2): its damping curve, where free, starts at 0. `whole`: gives equation_error() of the same where
+/// somebody has it; called only where no shape is free.
 [[nodiscard]] TrajectoryStart trajectory_start(const Model& asked, const std::vector<Signals>& experiments,
                                                const std::function<const FittedModel&()>& whole = {});
 

@@ -103,6 +103,30 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
   return in_words(names, relative);
 }
 
+std::string undetermined_starts(const Model& model, const Eigen::MatrixXd& precision, const std::vector<Signals>& experiments) {
+  constexpr double least_share = 0.01;  // of the unit length of an eigenvector, squared
+  const Eigen::Index columns = std::ssize(model.free_parameters()), n = model.states();
+  const Eigen::VectorXd scale = precision.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(scale.asDiagonal() * precision * scale.asDiagonal()));
+  if (solver.info() != Eigen::Success) return {};
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(precision.rows());
+  for (Eigen::Index k = 0; k < shares.size(); ++k) {
+    if (solver.eigenvalues()[k] <= singular_eigenvalue * solver.eigenvalues().maxCoeff())
+      shares += solver.eigenvectors().col(k).cwiseAbs2();
+  }
+  std::vector<std::string> names;
+  bool of_effects = true;
+  for (Eigen::Index at = columns; at < shares.size(); ++at) {
+    if (shares[at] < least_share) continue;
+    const std::size_t e = (at - columns) / n, j = (at - columns) % n, own = model.state_specs.size();
+    names.push_back((j < own ? model.state_specs[j].name : model.own_state_names[j - own]) + " in '" + experiments[e].name + "'");
+    of_effects = of_effects && j >= own;
+  }
+  if (names.empty()) return {};
+  return "these data do not determine the initial value of " + join_words(names) +
+         (of_effects ? "; leave out the effect that remembers it" : "; give it in [initial], fixed");
+}
+
 std::string undetermined_beside_priors(const Model& model, NormalEquations problem) {
   problem.prior = parameter_priors(model);
   return undetermined(model, problem);

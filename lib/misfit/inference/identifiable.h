@@ -3,6 +3,7 @@
 #include <string>
 
 #include "misfit/data/fit.h"
+#include "misfit/data/signals.h"
 #include "misfit/inference/roughness.h"
 #include "misfit/model/model.h"
 
@@ -18,7 +19,12 @@ namespace misfit {
 /// eigenvalues below 1e-10 of the largest. Empty if every parameter is determined.
 [[nodiscard]] std::string undetermined(const Model& model, const NormalEquations& problem);
 
-/// The same where `problem` carries the very wide priors of regularised_priors(): only those that the model states count.
+/// Which initial states these data do not determine, as a sentence: those in the eigenvectors of `precision` (of the free parameters, then
+/// of the states of each experiment; scaled to unit diagonal, priors and roughness included) with such eigenvalues. Empty if there is none.
+[[nodiscard]] std::string undetermined_starts(const Model& model, const Eigen::MatrixXd& precision,
+                                              const std::vector<Signals>& experiments);
+
+/// The same as undetermined() where `problem` carries the very wide priors of regularised_priors(): only those that the model states count.
 [[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem);
 
 /// Weakly determined directions, as warnings: parameters, and curves as a whole (their scale), that compensate each other — smallest

@@ -17,11 +17,25 @@ void inputs_within(const Simulation& run, std::size_t k, double t, double* u) {
     u[j] = inputs.recorded.hold[j] == Hold::zero_order ? before[j] : before[j] + share * (after[j] - before[j]);
 }
 
-/// The inputs at the time that was reached.
+/// The inputs at the time that was reached, and how fast they run in the interval on the way there: not at all where they are held, or
+/// beyond the record.
 struct Reached {
-  std::array<double, kMaxInputs> u{};
-  double t = 0.0;
+  std::array<double, kMaxInputs> u{}, rate{};
+  double t = 0.0, length = 0.0;  ///< of that interval
+  [[nodiscard]] bool inputs_run() const {
+    return std::any_of(rate.begin(), rate.end(), [](double r) { return r != 0.0; });
+  }
 };
+
+/// Into `reached`, those of interval k.
+void note_rates(const Simulation& run, std::size_t k, Reached& reached) {
+  const auto& [stepper, signals, inputs] = run;
+  reached.length = signals.t[k + 1] - signals.t[k];
+  for (std::size_t j = 0; j < inputs.recorded.hold.size(); ++j) {
+    const bool held = inputs.recorded.hold[j] == Hold::zero_order;
+    reached.rate[j] = held ? 0.0 : (inputs.at(k + 1).values[j] - inputs.at(k).values[j]) / reached.length;
+  }
+}
 
 /// step(interval) for each piece of the way from sample i to the time `shift` after or before it. Before the first and after the last
 /// sample inputs stay as they are there. False as soon as a step is.
@@ -32,6 +46,7 @@ bool along(const Simulation& run, std::size_t i, double shift, Reached& reached,
   const std::size_t count = inputs.recorded.hold.size();
   std::copy_n(inputs.at(i).values, count, reached.u.begin());
   reached.t = signals.t[i];
+  if (i + 1 < signals.samples()) note_rates(run, i, reached);
   const double end = reached.t + shift;
   for (std::size_t k = i; reached.t != end;) {
     const bool forward = end > reached.t;
@@ -41,12 +56,14 @@ bool along(const Simulation& run, std::size_t i, double shift, Reached& reached,
       const double to = std::abs(end - reached.t) <= length ? end : reached.t + std::copysign(length, shift);
       if (!step({reached.t, to, inputs.at(k), inputs.at(k)})) return false;
       reached.t = to;
+      reached.rate.fill(0.0);
       continue;
     }
     const std::size_t of = forward ? k : k - 1;
     const double to = forward ? std::min(end, signals.t[of + 1]) : std::max(end, signals.t[of]);
     inputs_within(run, of, reached.t, begin.data());
     inputs_within(run, of, to, reached.u.data());
+    note_rates(run, of, reached);
     const InputsAt from{begin.data(), &inputs.recorded}, at{reached.u.data(), &inputs.recorded};
     if (!step({reached.t, to, from, at, inputs.plan.of(of), inputs.plan.rate_at(of)})) return false;
     reached.t = to;
@@ -91,7 +108,7 @@ SampledOutputs::SampledOutputs(Stepper& stepper)
   next_ = carried_;
 }
 
-/// The state and its derivatives at the shifted time, and how fast the state moves there.
+/// The state and its derivatives at the shifted time, and how fast the state moves there, and the outputs with the inputs.
 bool SampledOutputs::carry(const Simulation& run, std::size_t i, double shift, const double* x) {
   std::copy_n(x, n_, moved_.begin());
   std::fill(carried_.begin(), carried_.end(), 0.0);
@@ -116,6 +133,18 @@ bool SampledOutputs::carry(const Simulation& run, std::size_t i, double shift, c
   evaluator_.rates(moved_.data(), u, reached.t, speed_.data());
   step_slots_.clear();
   evaluator_.linearise_outputs({moved_.data(), u, run.signals.t[i]}, step_slots_, moved_y_.data(), moved_rows_.data());
+  by_inputs_.fill(0.0);
+  if (!reached.inputs_run()) return true;
+  const double beside = 1e-3 * reached.length;
+  const auto predict_after = [&](double time, std::array<double, kMaxSensorPorts>& y) {
+    std::array<double, kMaxInputs> then{};
+    for (std::size_t j = 0; j < then.size(); ++j) then[j] = reached.u[j] + time * reached.rate[j];
+    evaluator_.predict(moved_.data(), {then.data(), &run.inputs.recorded}, run.signals.t[i], y.data());
+  };
+  std::array<double, kMaxSensorPorts> before{}, after{};
+  predict_after(-beside, before);
+  predict_after(beside, after);
+  for (int o = 0; o < ny_; ++o) by_inputs_[o] = (after[o] - before[o]) / (2.0 * beside);
   return true;
 }
 
@@ -123,7 +152,7 @@ bool SampledOutputs::carry(const Simulation& run, std::size_t i, double shift, c
 void SampledOutputs::write_row(int output, const Slots& slots) {
   const double* at_moved = moved_rows_.data() + output * kRowStride;
   double* row = rows_.data() + output * kRowStride;
-  double motion = 0.0;
+  double motion = by_inputs_[output];
   for (int j = 0; j < n_; ++j) motion += at_moved[j] * speed_[j];
   const double* by_shift = shift_rows_.data() + static_cast<std::ptrdiff_t>(output) * width_;
   for (int c = 0; c < n_ + slots.count(); ++c) row[c] = motion * by_shift[c];

@@ -28,10 +28,11 @@ class SampledOutputs {
   int n_, ny_, width_;
   std::array<double, kMaxSensorPorts> y_{}, moved_y_{};
   std::array<double, kMaxStates> moved_{}, speed_{};
-  std::vector<double> rows_;            // of the outputs, then of the shifts; kRowStride each
-  std::vector<double> D_, moved_rows_;  // of a step; of the outputs at the shifted time
-  std::vector<double> shift_rows_;      // of the shift of each output: by the state and by every column
-  std::vector<double> carried_, next_;  // ∂(state at the shifted time)/∂(state, every column)
+  std::array<double, kMaxOutputs> by_inputs_{};  // of the outputs at the shifted time, as the inputs run there [output/s]
+  std::vector<double> rows_;                     // of the outputs, then of the shifts; kRowStride each
+  std::vector<double> D_, moved_rows_;           // of a step; of the outputs at the shifted time
+  std::vector<double> shift_rows_;               // of the shift of each output: by the state and by every column
+  std::vector<double> carried_, next_;           // ∂(state at the shifted time)/∂(state, every column)
   Slots step_slots_;
 };
 

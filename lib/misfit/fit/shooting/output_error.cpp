@@ -147,7 +147,8 @@ class Estimator {
 
   /// The model follows the motion over short segments only.
   FittedModel lost(const ShootingPass& pass) {
-    const std::string span = format_value(std::round(100.0 * static_cast<double>(pass.length) * setting_.step) / 100.0);
+    const double seconds = static_cast<double>(pass.length) * setting_.step, digit = std::pow(10.0, std::floor(std::log10(seconds)) - 2.0);
+    const std::string span = format_value(std::round(seconds / digit) * digit);
     const std::string stop = "longer segments diverge or predict worse than a constant would";
     shooting_.forget_failure();
     const std::string what =
@@ -322,7 +323,10 @@ class Estimator {
   }
 
   std::string singular_message(const NormalEquations& linearised) {
-    const std::string which = linearised.N.size() > 0 ? undetermined(shooting_.model(), linearised) : "";
+    const Model& model = shooting_.model();
+    std::string which = linearised.N.size() > 0 ? undetermined(model, linearised) : "";
+    if (which.empty() && linearised.N.size() > 0)
+      which = undetermined_starts(model, precision_of(linearised, penalties_, 1.0), experiments_);
     return at_the_end(which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which);
   }
 
@@ -400,9 +404,10 @@ class Estimator {
     warn_of_collinearity(out.model, covariance.topLeftCorner(columns, columns), fit);
     warn_of_other_trims(fit);
     warn_of_other_noise(out.model, fit);
+    warn_of_unknown_noise({shooting_, end.runs, experiments_}, end.smoothed.edf, fit);
     fit.warnings.insert(fit.warnings.end(), other_maxima_.begin(), other_maxima_.end());
     const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
-    classify_motion(out.model, {setting_, unknowns, regression_says_driven_}, fit);
+    classify_motion(out.model, {setting_, experiments_, unknowns, regression_says_driven_}, fit);
     reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
     if (end.degrees() < kFewestDegrees && !out.model.noise_held()) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }

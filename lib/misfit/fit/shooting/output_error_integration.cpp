@@ -65,10 +65,12 @@ bool OutputErrorIntegration::negligible_at(const std::vector<Segment>& runs, con
   constexpr double enough = 0.1, aim = 0.05;
   constexpr int most_plans = 4;
   if (!checked_) return true;
+  judged_ = false;
   const auto coarse = shooting_.outputs(false), fine = shooting_.outputs(true);
   if (!coarse || !fine) return true;
   shift_ = largest_in_sigmas(shooting_.shift_by(difference(*fine, *coarse), runs, covariance), covariance);
-  if (!(shift_ > enough) || plans_ == most_plans || tolerance_ <= kFinestTolerance) return true;
+  judged_ = !(shift_ > enough) || plans_ == most_plans || tolerance_ <= kFinestTolerance;
+  if (judged_) return true;
   ++plans_;
   plan_anew(aim / shift_);
   return false;
@@ -77,6 +79,7 @@ bool OutputErrorIntegration::negligible_at(const std::vector<Segment>& runs, con
 bool OutputErrorIntegration::plan_finely() {
   constexpr double fine = 1e-7;
   if (tolerance_ <= fine) return false;
+  judged_ = false;
   tolerance_ = fine;
   shooting_.plan(tolerance_);
   return true;
@@ -90,7 +93,7 @@ void OutputErrorIntegration::describe(FittedModel& out) const {
   }
   std::string& fact = out.fit.facts["integration"];
   fact = in_words(used, plans_);
-  if (checked_) fact += in_words_of(shift_, tolerance_);
+  if (checked_) fact += judged_ ? in_words_of(shift_, tolerance_) : "; what its steps err by was not checked at the estimate";
 }
 
 }  // namespace misfit::output_error_parts

@@ -43,7 +43,8 @@ class OutputErrorIntegration {
   double tolerance_;
   bool checked_;
   double shift_ = 0.0;
-  int plans_ = 0;  ///< made at estimates
+  bool judged_ = false;  ///< shift_ is that of the plan in use, which stands
+  int plans_ = 0;        ///< made at estimates
 };
 
 }  // namespace misfit::output_error_parts

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "misfit/core/display.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
@@ -38,7 +40,43 @@ std::vector<std::vector<double>> channel_residuals(const EndOfSearch& end, std::
 
 struct Squares {
   double sum = 0.0, count = 0.0;
+  [[nodiscard]] double rms() const { return std::sqrt(sum / std::max(count, 1.0)); }
 };
+
+/// Measurements of output o, NaN where they do not count.
+std::vector<double> counted_values(const Signals& experiment, std::size_t o) {
+  std::vector<double> out = o < experiment.measured.size() ? experiment.measured[o].values : std::vector<double>{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (i < experiment.exclude || experiment.held_out(i)) out[i] = std::nan("");
+  }
+  return out;
+}
+
+/// The motion that output o shows, of all experiments: deviations of the measurements that count from their mean in the experiment.
+Squares motion_of(const std::vector<Signals>& experiments, std::size_t o) {
+  Squares out;
+  for (const Signals& experiment : experiments) {
+    const std::vector<double> values = counted_values(experiment, o);
+    const auto count = static_cast<double>(count_finite(values));
+    out.sum += count * std::pow(standard_deviation(values), 2);
+    out.count += count;
+  }
+  return out;
+}
+
+/// White noise of output o, of all experiments in which it counts; NaN where none tells.
+double noise_of(const std::vector<Signals>& experiments, std::size_t o) {
+  Squares out;
+  for (const Signals& experiment : experiments) {
+    const auto count = static_cast<double>(count_finite(counted_values(experiment, o)));
+    if (count == 0.0) continue;
+    const double noise = measurement_noise(experiment.measured[o].values);
+    if (!std::isfinite(noise)) continue;
+    out.sum += count * noise * noise;
+    out.count += count;
+  }
+  return out.count > 0.0 ? out.rms() : std::nan("");
+}
 
 Squares squares_of(const std::vector<std::vector<double>>& residuals) {
   Squares out;
@@ -50,17 +88,49 @@ Squares squares_of(const std::vector<std::vector<double>>& residuals) {
   return out;
 }
 
+/// Residuals of every output.
+std::vector<Squares> residuals_of_outputs(const EndOfSearch& end) {
+  std::vector<Squares> out;
+  for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) out.push_back(squares_of(channel_residuals(end, o)));
+  return out;
+}
+
+/// Noise of every output by its residuals, which lose their share of the parameters; nullopt where they are too few, or 0.
+std::vector<std::optional<double>> noise_by_residuals(const std::vector<Squares>& residuals, double edf) {
+  double all = 0.0;
+  for (const Squares& of : residuals) all += of.count;
+  std::vector<std::optional<double>> out;
+  for (const auto& [squares, count] : residuals) {
+    const double share = edf * count / std::max(all, 1.0);
+    const bool enough = count > share + 1.0 && squares > 0.0;
+    out.push_back(enough ? std::optional(std::sqrt(squares / (count - share))) : std::nullopt);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> channel_sigmas(const EndOfSearch& end, double edf) {
   std::vector<double> sigma = end.shooting.sigma();
-  const double share = edf / static_cast<double>(sigma.size());
+  const std::vector<std::optional<double>> found = noise_by_residuals(residuals_of_outputs(end), edf);
   for (std::size_t o = 0; o < sigma.size(); ++o) {
-    if (end.shooting.model().known_noise[o].fixed) continue;
-    const auto [squares, count] = squares_of(channel_residuals(end, o));
-    if (count > share + 1.0 && squares > 0.0) sigma[o] = std::sqrt(squares / (count - share));
+    if (!end.shooting.model().known_noise[o].fixed) sigma[o] = found[o].value_or(sigma[o]);
   }
   return sigma;
+}
+
+void warn_of_unknown_noise(const EndOfSearch& end, double edf, Fit& fit) {
+  const Model& model = end.shooting.model();
+  const auto& outputs = model.system->spec().outputs;
+  const std::vector<Squares> residuals = residuals_of_outputs(end);
+  const std::vector<std::optional<double>> found = noise_by_residuals(residuals, edf);
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    if (model.known_noise[o].fixed || found[o]) continue;
+    const auto in_unit = [&](double value) { return in_display_unit(value, outputs[o].unit); };
+    fit.warnings.push_back("the noise of " + outputs[o].name +
+                           " could not be estimated (measurements that count: " + format_value(residuals[o].count) + ", residual RMS " +
+                           in_unit(residuals[o].rms()) + "): it stands at the first guess, " + in_unit(end.shooting.sigma()[o]));
+  }
 }
 
 /// RMS of a channel's residuals in units of its sigma where that is held, so that only their correlation counts; else 1.
@@ -149,11 +219,30 @@ void set_noise(const Shooting& shooting, const std::vector<Signals>& experiments
   }
 }
 
+namespace {
+
+/// Where the initial state of an experiment that is held out as a whole comes from.
+std::string start_in_words(const Shooting& shooting, std::size_t experiment) {
+  const Model& model = shooting.model();
+  const std::size_t of_system = model.state_specs.size(), states = model.states();
+  std::vector<std::string> read;
+  for (std::size_t j = 0; j < states; ++j) {
+    if (!shooting.read_from_samples(experiment, j)) continue;
+    read.push_back(j < of_system ? model.state_specs[j].name : model.own_state_names[j - of_system]);
+  }
+  if (read.size() == states) return "its initial state is taken from its first samples";
+  if (read.empty()) return "its initial state is the one that is fixed, or shared with the others";
+  return "of its initial state " + join_words(read) + (read.size() > 1 ? " are" : " is") +
+         " taken from its first samples, the rest is fixed or shared with the others";
+}
+
+}  // namespace
+
 void set_initial_states(const Shooting& shooting, const std::vector<Signals>& experiments, FittedModel& out) {
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     out.initial_states.push_back(shooting.initial_state(e));
     if (shooting.held_out(e))
-      out.fit.facts["held out: " + experiments[e].name] = "all its samples are held out: its initial state is taken from its first samples";
+      out.fit.facts["held out: " + experiments[e].name] = "all its samples are held out: " + start_in_words(shooting, e);
   }
 }
 
@@ -219,17 +308,19 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
 }
 
 bool segments_follow(Shooting& shooting, const std::vector<Signals>& experiments) {
+  constexpr double of_noise = 3.0;  // sigma: what is no larger says nothing against the model, however little an output shows
   const std::vector<RowMatrix> y = shooting.predict_segments();
-  for (std::size_t e = 0; e < y.size(); ++e) {
-    for (std::size_t o = 0; o < shooting.sigma().size(); ++o) {
-      double squares = 0.0, count = 0.0;
+  for (std::size_t o = 0; o < shooting.sigma().size(); ++o) {
+    Squares residuals;
+    for (std::size_t e = 0; e < y.size(); ++e) {
       for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
         if (!shooting.counts(e, i, o)) continue;
-        squares += std::pow(y[e](i, o) - experiments[e].measured[o].values[i], 2);
-        count += 1.0;
+        residuals.sum += std::pow(y[e](i, o) - experiments[e].measured[o].values[i], 2);
+        residuals.count += 1.0;
       }
-      if (!(std::sqrt(squares / std::max(count, 1.0)) <= standard_deviation(experiments[e].measured[o].values))) return false;
     }
+    const double most = std::max(motion_of(experiments, o).rms(), of_noise * shooting.sigma()[o]);
+    if (!(residuals.rms() <= most)) return false;
   }
   return true;
 }
@@ -246,9 +337,9 @@ double misfit_of(const EndOfSearch& end) {
 std::string why_undetermined(const std::string& which, std::string unsettled, const EndOfSearch& end) {
   const auto& outputs = end.shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
-    const auto [squares, count] = squares_of(channel_residuals(end, o));
-    const double rms = std::sqrt(squares / std::max(count, 1.0)), size = standard_deviation(end.experiments.front().measured[o].values);
-    if (rms < follows * size) continue;
+    const Squares residuals = squares_of(channel_residuals(end, o));
+    const double rms = residuals.rms(), size = motion_of(end.experiments, o).rms();
+    if (residuals.count == 0.0 || rms < follows * size) continue;
     unsettled = "the search ended at no fit of " + outputs[o].name + " (residual RMS " + in_display_unit(rms, outputs[o].unit) +
                 ", motion RMS " + in_display_unit(size, outputs[o].unit) + ")";
     break;
@@ -260,13 +351,15 @@ std::string why_undetermined(const std::string& which, std::string unsettled, co
 
 namespace {
 
-/// Of a channel's estimation part in all experiments, on an even grid.
-std::vector<double> residuals_of(const std::string& channel, const Fit& fit) {
+/// Of a channel's measurements that count in all experiments, on an even grid.
+std::vector<double> residuals_of(const std::string& channel, const std::vector<Signals>& experiments, const Fit& fit) {
   std::vector<std::vector<double>> all;
   for (const auto& p : fit.predictions) {
     if (p.channel != channel) continue;
+    const std::size_t exclude = experiments[all.size()].exclude;
     std::vector<double> residuals;
-    for (std::size_t i = 0; i < p.t.size(); ++i) residuals.push_back(p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
+    for (std::size_t i = 0; i < p.t.size(); ++i)
+      residuals.push_back(i < exclude || p.held_out[i] ? std::nan("") : p.measured[i] - p.predicted[i]);
     all.push_back(on_even_grid(p.t, residuals));
   }
   return joined_series(all);
@@ -288,14 +381,17 @@ void warn_of_other_noise(const Model& model, Fit& fit) {
 }
 
 void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
-  const auto& [setting, unknowns, driven] = motion;
-  const ChannelPrediction& p = fit.predictions.front();
+  const auto& [setting, experiments, unknowns, driven] = motion;
+  const auto& outputs = model.system->spec().outputs;
+  const auto shown = std::find_if(outputs.begin(), outputs.end(), [&](const OutputSpec& o) { return fit.rms.contains(o.name); });
+  if (shown == outputs.end()) return;
+  const std::size_t o = shown - outputs.begin();
   const auto half_period = static_cast<int>(std::min(pi / setting.frequency / setting.step, static_cast<double>(setting.samples)));
-  const WhitenessTest test = whiteness(residuals_of(p.channel, fit), 1, std::max(6, half_period), unknowns);
-  const double noise = measurement_noise(p.measured), rms = fit.rms.at(p.channel).value, size = standard_deviation(p.measured);
-  fit.facts["whiteness"] = "residuals of " + p.channel + " at " + in_words(test);
-  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, p.unit) + ", motion RMS " + in_display_unit(size, p.unit) +
-                           ", measurement noise about " + in_display_unit(noise, p.unit);
+  const WhitenessTest test = whiteness(residuals_of(shown->name, experiments, fit), 1, std::max(6, half_period), unknowns);
+  const double noise = noise_of(experiments, o), rms = fit.rms.at(shown->name).value, size = motion_of(experiments, o).rms();
+  fit.facts["whiteness"] = "residuals of " + shown->name + " at " + in_words(test);
+  fit.facts["explained"] = "residual RMS " + in_display_unit(rms, shown->unit) + ", motion RMS " + in_display_unit(size, shown->unit) +
+                           ", measurement noise about " + in_display_unit(noise, shown->unit);
   constexpr double clearly_above_noise = 2.0;
   const bool above_noise = rms > clearly_above_noise * noise, coloured = looks_driven(test) && above_noise;
   fit.driven = above_noise && driven.value_or(coloured);

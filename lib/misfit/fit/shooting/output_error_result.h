@@ -15,8 +15,11 @@ struct EndOfSearch {
   const std::vector<Signals>& experiments;
 };
 
-/// Per-channel residuals of the estimation part → standard deviations with the effective number of parameters taken off.
+/// Per-channel residuals of the estimation part → standard deviations, the effective number of parameters taken off the measurements, of
+/// each output by its share of them. Where nothing is left, and where the noise is held, the shooting's own.
 [[nodiscard]] std::vector<double> channel_sigmas(const EndOfSearch& end, double edf);
+/// Where nothing is left of a free noise: a warning.
+void warn_of_unknown_noise(const EndOfSearch& end, double edf, Fit& fit);
 
 /// Residuals and their derivatives by (parameters, initial states of each experiment) in units of sigma, from runs with derivatives; the
 /// residuals of an output whose noise is held in units of their own RMS.
@@ -27,7 +30,7 @@ void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, F
 
 /// Noise of every output with its standard error from `degrees` of freedom in all, of which each has its share of the measurements.
 void set_noise(const Shooting& shooting, const std::vector<Signals>& experiments, double degrees, Fit& fit);
-/// Of every experiment, and which of them are taken from samples that are all held out.
+/// Of every experiment, and where those of experiments come from whose samples are all held out.
 void set_initial_states(const Shooting& shooting, const std::vector<Signals>& experiments, FittedModel& out);
 /// Why no sigma is given.
 [[nodiscard]] std::string too_few(double count, double unknowns);
@@ -39,7 +42,8 @@ void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, 
 /// fit.noise.
 void errors_of(const std::vector<Signals>& experiments, Fit& fit);
 
-/// Do the segments of the last solve predict better than a constant would? If not, what the solver reached is no start for longer ones.
+/// Do the segments of the last solve predict every output better than a constant per experiment would, or to three sigmas of its noise? If
+/// not, what the solver reached is no start for longer ones. Over all experiments together: one at rest shows nothing to be followed.
 [[nodiscard]] bool segments_follow(Shooting& shooting, const std::vector<Signals>& experiments);
 
 /// Minus the log-likelihood of the residuals with each channel's noise at its maximum, but for constants.
@@ -55,10 +59,12 @@ void warn_of_other_noise(const Model& model, Fit& fit);
 
 struct MotionFacts {
   const Setting& setting;
+  const std::vector<Signals>& experiments;
   double unknowns = 0.0;       ///< per channel
   std::optional<bool> driven;  ///< by the regression, where there is one: so that all methods say the same
 };
-/// Says whether a deterministic model followed the motion, and marks the fit where it did not.
+/// Says whether a deterministic model followed the motion of the first output that counts, all experiments together, and marks the fit
+/// where it did not.
 void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit);
 
 }  // namespace misfit::output_error_parts

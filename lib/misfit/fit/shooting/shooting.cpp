@@ -37,6 +37,7 @@ Shooting::Shooting(Model model, const std::vector<Signals>& experiments, Shootin
       for (std::size_t o = 0; o < static_cast<std::size_t>(model_.outputs()); ++o) any = any || counts(e, i, o);
     }
     held_out_.push_back(!any);
+    if (any && !experiments_[e].after_gap && !shared_with_) shared_with_ = e;
   }
 }
 
@@ -149,6 +150,11 @@ int add_parameters(LeastSquares& problem, const Model& model, const std::vector<
     upper.push_back(p.curve >= 0 ? infinite : std::min(p.upper, beyond));
     bounded = bounded || p.curve < 0;
   }
+  if (theta.empty()) {  // initial states alone are looked for: Ceres knows no empty block
+    const int nothing = problem.add_block({0.0});
+    problem.fix_block(nothing);
+    return nothing;
+  }
   return bounded ? problem.add_block(theta, lower, upper) : problem.add_block(theta);
 }
 
@@ -209,9 +215,10 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   std::optional<Unhurried> writing_up;
   if (summary.out_of_time) writing_up.emplace();
   const std::vector<double>& solved = problem.block(theta_block);
-  model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(solved)));
+  model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(free_)));
   set_theta(solved.data());
   remember(pieces, problem);
+  failure_.clear();  // of points that were tried on the way
   return summary;
 }
 

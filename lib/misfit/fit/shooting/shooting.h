@@ -89,8 +89,11 @@ class Shooting {
   [[nodiscard]] int linearisations() const { return linearisations_; }
   [[nodiscard]] const std::string& failure() const { return failure_; }  ///< where the last run left the finite numbers, in words
   void forget_failure() { failure_.clear(); }
-  /// Does no measurement of it count? Then its initial state, unless shared, is the one read from its first samples (`start_states`).
+  /// Does no measurement of it count?
   [[nodiscard]] bool held_out(std::size_t experiment) const { return held_out_[experiment]; }
+  /// Is this initial state the one read from the first samples (`start_states`), since no measurement tells it? Those that are fixed or
+  /// shared with an experiment that counts are not; own states of effects are neither.
+  [[nodiscard]] bool read_from_samples(std::size_t experiment, std::size_t state) const;
   /// Is output o of sample i a residual of the estimation?
   [[nodiscard]] bool counts(std::size_t experiment, std::size_t i, std::size_t o) const;
 
@@ -110,11 +113,13 @@ class Shooting {
   std::vector<Piece> cut(std::size_t length) const;
   void add_pieces(LeastSquares& problem, int theta_block, std::vector<Piece>& pieces);
   void add_initial(LeastSquares& problem, const std::vector<Piece>& pieces) const;
-  /// Stiffness by which an initial state is held [1/unit²]: fixed to its value, or shared with the first experiment.
+  /// Stiffness by which an initial state is held [1/unit²]: to its value, or to that of another experiment.
   [[nodiscard]] double holding(std::size_t state) const;
+  /// As the study has it; free after a gap, and of own states of effects.
+  [[nodiscard]] Initial kind_of_start(std::size_t experiment, std::size_t state) const;
   /// What an initial state is held to by itself.
   [[nodiscard]] std::optional<double> known_start(std::size_t experiment, std::size_t state) const;
-  /// Is it one unknown with that of the first experiment? Not after a gap.
+  /// Is it one unknown with that of `shared_with_`?
   [[nodiscard]] bool shared_start(std::size_t experiment, std::size_t state) const;
   void hold_initial(NormalEquations& out) const;
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
@@ -127,6 +132,7 @@ class Shooting {
   std::vector<RowMatrix> history_;
   std::vector<Eigen::VectorXd> read_start_;  ///< per experiment, from its first samples
   std::vector<bool> held_out_;
+  std::optional<std::size_t> shared_with_;  ///< experiment whose initial state shared ones are: the first not after a gap that counts
   std::vector<InputTable> inputs_;
   std::vector<int> free_;
   std::vector<double> values_;
