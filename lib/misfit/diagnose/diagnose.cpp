@@ -165,7 +165,8 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
   map.chi2 = result.chi2;
   map.dof = result.dof;
   map.p_value = result.dof > 0 ? chi_square_tail(result.chi2, result.dof) : 1.0;
-  map.p_corrected = map.p_value;
+  const auto quantities = static_cast<double>(features.size());
+  map.p_corrected = sidak(map.p_value, static_cast<double>(spec.dynamic_ports.size()) * quantities * (quantities - 1.0) / 2.0);
   out.push_back(std::move(map));
   return out;
 }
