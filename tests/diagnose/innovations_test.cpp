@@ -89,5 +89,34 @@ TEST(Whiteness, ALineKeepsItsFrequencyWhereSamplesAreMissing) {
   EXPECT_NEAR(whiteness_of(t, w).peak_frequency, 1.3, 0.02);
 }
 
+TEST(Nis, WindowsHaveAsManyMeasurementsAsTheirBandSays) {
+  std::vector<double> t;
+  for (int k = 0; k < 8000; ++k) t.push_back(0.1 * k);
+  Record record(t);
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    record.add(i % 4 == 0 ? normal(random) : std::nan(""));
+    record.add(i % 8 == 0 ? normal(random) : std::nan(""));
+  }
+  const std::vector<NisSeries> series = nis_of(record.estimate);
+  ASSERT_EQ(series.size(), 1U);
+  ASSERT_EQ(series[0].nis.size(), 75U) << "3000 measurements in windows of 40";
+  EXPECT_NEAR(series[0].upper, 1.0 + 1.96 * std::sqrt(2.0 / 40.0), 1e-12);
+  EXPECT_LT(series[0].outside, 0.12) << "5 % expected, sigma 2.5 %";
+  EXPECT_LT(series[0].t.front(), 15.0);
+}
+
+TEST(Nis, OfTooFewMeasurementsNothingIsSaid) {
+  std::vector<double> t;
+  for (int k = 0; k < 100; ++k) t.push_back(0.1 * k);
+  Record record(t);
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    record.add(i % 8 == 0 ? 1.0 : std::nan(""));
+    record.add(std::nan(""));
+  }
+  EXPECT_TRUE(nis_of(record.estimate).empty());
+}
+
 }  // namespace
 }  // namespace misfit

@@ -142,32 +142,48 @@ std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate) {
   return out;
 }
 
+namespace {
+
+/// Squares of standardised innovations, one after the other in time.
+struct Squares {
+  std::vector<double> value, t;
+};
+
+Squares squares_of(const FilterTrace& trace, const FilterData& data) {
+  const std::size_t ny = trace.ny;
+  Squares out;
+  for (std::size_t i = data.first * ny; i < trace.samples * ny; ++i) {
+    if (data.use[i] == SampleRole::none || !(trace.S[i] > 0.0)) continue;
+    out.value.push_back(trace.e[i] * trace.e[i] / trace.S[i]);
+    out.t.push_back(data.signals->t[i / ny]);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<NisSeries> nis_of(const FilterEstimate& estimate) {
   std::vector<NisSeries> out;
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
-    const FilterTrace& trace = estimate.traces[e];
-    const FilterData& data = estimate.data[e];
-    const std::size_t ny = trace.ny;
+    const std::size_t channels = estimate.traces[e].ny;
+    const Squares squares = squares_of(estimate.traces[e], estimate.data[e]);
+    constexpr std::size_t windows = 80, fewest_per_channel = 20;
+    const std::size_t count = channels * std::max(fewest_per_channel, squares.value.size() / (windows * channels));
+    if (squares.value.size() < count) continue;
     NisSeries series;
-    series.experiment = data.signals->name;
-    const std::size_t window = std::max<std::size_t>(20, trace.samples / 80);
-    double outside = 0.0;
-    for (std::size_t from = data.first; from + window <= trace.samples; from += window) {
-      double sum = 0.0, count = 0.0;
-      for (std::size_t i = from * ny; i < (from + window) * ny; ++i) {
-        if (data.use[i] == SampleRole::none || !(trace.S[i] > 0.0)) continue;
-        sum += trace.e[i] * trace.e[i] / trace.S[i];
-        count += 1.0;
-      }
-      if (count < static_cast<double>(window)) continue;
-      series.t.push_back(data.signals->t[from + window / 2]);
-      series.nis.push_back(sum / count);
-    }
-    const double spread = 1.96 * std::sqrt(2.0 / static_cast<double>(window * ny));
+    series.experiment = estimate.data[e].signals->name;
+    const double spread = 1.96 * std::sqrt(2.0 / static_cast<double>(count));
     series.lower = 1.0 - spread;
     series.upper = 1.0 + spread;
-    for (double v : series.nis) outside += v < series.lower || v > series.upper ? 1.0 : 0.0;
-    series.outside = series.nis.empty() ? 0.0 : outside / static_cast<double>(series.nis.size());
+    double outside = 0.0;
+    for (std::size_t from = 0; from + count <= squares.value.size(); from += count) {
+      const auto first = squares.value.begin() + static_cast<std::ptrdiff_t>(from);
+      const double nis = std::accumulate(first, first + static_cast<std::ptrdiff_t>(count), 0.0) / static_cast<double>(count);
+      series.t.push_back(squares.t[from + count / 2]);
+      series.nis.push_back(nis);
+      outside += nis < series.lower || nis > series.upper ? 1.0 : 0.0;
+    }
+    series.outside = outside / static_cast<double>(series.nis.size());
     out.push_back(std::move(series));
   }
   return out;

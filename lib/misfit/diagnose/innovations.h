@@ -17,7 +17,8 @@ namespace misfit {
 /// The same of each channel that has at least 100 of them.
 [[nodiscard]] std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate);
 
-/// Normalised innovation squared per channel and sample, averaged over windows of about 1/80 of the recording.
+/// Normalised innovation squared per measurement, averaged over windows of about 1/80 of the measurements, at least 20 a channel; nothing
+/// of an experiment with fewer.
 [[nodiscard]] std::vector<NisSeries> nis_of(const FilterEstimate& estimate);
 
 /// The random force from all measurements, earlier and later, with every quantity at the same samples.
