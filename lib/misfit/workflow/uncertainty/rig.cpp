@@ -66,6 +66,8 @@ Rig::Rig(Session& session, const Model& model) {
     sweep_ = read_sweep(sweep_stage(session));
     calibrate_.model = nominal_.calibration->model;
     calibrate_.candidates.clear();
+    calibrate_.test_others = false;
+    calibrate_.force = session.study.camera.free;
     for (const CameraTest& test : nominal_.calibration->tests) {
       if (test.selected) calibrate_.force.push_back(test.name);
     }

@@ -1,0 +1,74 @@
+// What [uncertainty] perturbs: the camera as the study calibrates it, and only what acts.
+#include "misfit/workflow/uncertainty/rig.h"
+
+#include <gmock/gmock.h>
+#include <misfit_models_registry.h>
+
+#include <filesystem>
+#include <regex>
+#include <sstream>
+
+#include "misfit/core/error.h"
+#include "misfit/core/files.h"
+#include "misfit/model/model.h"
+#include "misfit/workflow/estimate/estimate.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/paths.h"
+
+namespace misfit {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Four seconds of configs/mpf_f111 from its track.
+class RigStudy : public testing::Test {
+ protected:
+  RigStudy() {
+    misfit_models_register(registry_);
+    const fs::path from = paths::source() / "configs/mpf_f111";
+    for (const auto& entry : fs::directory_iterator(from)) {
+      if (entry.path().extension() == ".csv") fs::copy_file(entry.path(), folder_.path() / entry.path().filename());
+    }
+    std::istringstream track(read_file(from / "track.csv"));
+    std::string rows, line;
+    for (int row = 0; row < 240 && std::getline(track, line); ++row) rows += line + "\n";
+    folder_.write("track.csv", rows);
+    text_ = read_file(from / "study.toml");
+    change("\nvideo = .*", "\ntrack = \"track.csv\"");
+  }
+  void change(const std::string& pattern, const std::string& by) {
+    const std::string before = text_;
+    text_ = std::regex_replace(before, std::regex(pattern), by, std::regex_constants::format_first_only);
+    EXPECT_NE(before, text_) << pattern;
+  }
+  [[nodiscard]] Session session() const {
+    const fs::path study = folder_.write("study.toml", text_);
+    return Session({.study = study.string(), .out = (folder_.path() / "out").string()}, registry_);
+  }
+  static Rig rig_of(Session& session) {
+    hold_perturbed_camera(session);
+    return Rig(session, prepare(session).model);
+  }
+
+  TemporaryFolder folder_;
+  Registry registry_;
+  std::string text_;
+};
+
+TEST_F(RigStudy, CalibratingAgainFreesWhatTheStudyFrees) {
+  change("sweep = \"static_sweep.csv\"", "sweep = \"static_sweep.csv\"\nfree = [\"camera_roll\"]");
+  change("perturb = .*", "perturb = { R1 = \"1 cm\" }\nrecalibrate = true");
+  Session opened = session();
+  const Rig rig = rig_of(opened);
+  const Calibration nominal = *calibrate_stage(opened), again = *rig.at({0.0}).calibration;
+  ASSERT_THAT(nominal.names, testing::Contains("camera_roll"));
+  EXPECT_EQ(again.names, nominal.names);
+  EXPECT_NEAR(again.value("camera_roll"), nominal.value("camera_roll"), 1e-9);
+  EXPECT_NEAR(again.value("K"), nominal.value("K"), 1e-6 * nominal.value("K"));
+  EXPECT_NE(rig.at({0.01}).calibration->value("camera_roll"), nominal.value("camera_roll"));
+}
+
+}  // namespace
+}  // namespace misfit
