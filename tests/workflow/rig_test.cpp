@@ -70,5 +70,23 @@ TEST_F(RigStudy, CalibratingAgainFreesWhatTheStudyFrees) {
   EXPECT_NE(rig.at({0.01}).calibration->value("camera_roll"), nominal.value("camera_roll"));
 }
 
+std::string refusal(Session session) {
+  try {
+    hold_perturbed_camera(session);
+    static_cast<void>(Rig(session, prepare(session).model));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_F(RigStudy, OfACalibratedCameraWhoseParameterTheStudyFreesIsRefused) {
+  change("parachute_planar", "parachute_spherical");
+  change("perturb = .*", "camera = \"calibration\"");
+  EXPECT_EQ(refusal(session()), "no error");
+  text_ += "\n[parameters.K]\nfree = true\n";
+  EXPECT_THAT(refusal(session()), AllOf(HasSubstr("study.toml:"), HasSubstr("'K' is estimated by this study")));
+}
+
 }  // namespace
 }  // namespace misfit

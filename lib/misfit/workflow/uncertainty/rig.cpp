@@ -49,13 +49,20 @@ bool is_free(const Model& model, const std::string& name) {
   return i >= 0 && model.parameters[i].free;
 }
 
+void require_held(const Source& where, const Model& model, const std::string& name) {
+  if (!is_free(model, name)) return;
+  throw InputError(where, "'" + shown(name) +
+                              "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or leave it out "
+                              "here)");
+}
+
 }  // namespace
 
 Rig::Rig(Session& session, const Model& model) {
   const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   list_known(session, model);
   for (const PerturbStudy& request : uncertainty.perturb) add(request, model);
-  if (uncertainty.calibrated_camera) add_calibration(session);
+  if (uncertainty.calibrated_camera) add_calibration(session, model);
   if (perturbations_.names().empty())
     throw InputError(uncertainty.where, "nothing is perturbed: perturb = { R = \"0.1524 m\", … } says what, and how far");
   note_held_camera(model);
@@ -108,11 +115,7 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
   const Source& where = request.number.where;
   if (of_sweep(request.name) && !known_.contains(request.name))
     throw InputError(where, request.name + " acts through the calibration alone: recalibrate = true calibrates again in every run");
-  if (is_free(model, request.name)) {
-    throw InputError(where, "'" + request.name +
-                                "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or "
-                                "leave it out here)");
-  }
+  require_held(where, model, request.name);
   const auto known = known_.find(request.name);
   if (known == known_.end()) {
     std::vector<std::string> valid;
@@ -129,13 +132,14 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
   described_.push_back({request.name, unit, value, sigma, distribution_text(request, unit), ""});
 }
 
-void Rig::add_calibration(const Session& session) {
+void Rig::add_calibration(const Session& session, const Model& model) {
   const Source& where = session.study.uncertainty->where_camera;
   if (!nominal_.calibration || nominal_.calibration->names.empty())
     throw InputError(where, "camera = \"calibration\" needs a calibrated camera, or one given with sigmas, and a track");
   const Calibration& calibration = *nominal_.calibration;
   CorrelatedPerturbation group{"calibration", calibration.names, {}, calibration.covariance};
   for (const std::string& name : calibration.names) {
+    require_held(where, model, name);
     const auto& single = perturbations_.single;
     if (std::any_of(single.begin(), single.end(), [&](const Perturbation& p) { return p.name == name; }))
       throw InputError(where, "'" + shown(name) + "' is in perturb as well: give it one of the two");
