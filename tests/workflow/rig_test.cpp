@@ -88,5 +88,39 @@ TEST_F(RigStudy, OfACalibratedCameraWhoseParameterTheStudyFreesIsRefused) {
   EXPECT_THAT(refusal(session()), AllOf(HasSubstr("study.toml:"), HasSubstr("'K' is estimated by this study")));
 }
 
+TEST(RigOfAFilm, ThatTheOutputsReadThemselvesHasNoImageOffset) {
+  const TemporaryFolder folder;
+  Registry registry;
+  misfit_models_register(registry);
+  folder.write("system.toml", R"toml(
+[system]
+doc = "pendulum on film"
+source = "textbook"
+[states]
+theta = { unit = "rad", scale = 0.1 }
+omega = { unit = "rad/s", scale = 0.4 }
+[equations]
+theta = "omega"
+omega = "-w^2*sin(theta)"
+[parameters]
+w = { unit = "rad/s", value = 2.0 }
+arm = { unit = "px", value = 400.0 }
+[outputs]
+x_px = { unit = "px", formula = "arm*sin(theta)", noise = 0.3 }
+)toml");
+  const fs::path study =
+      folder.write("study.toml",
+                   "[study]\nname = \"film\"\nmethods = [\"output_error\"]\n[system]\nfile = \"system.toml\"\n"
+                   "[[experiment]]\nvideo = \"" +
+                       (paths::source() / "configs/mpf_f111/flight.mkv").string() + "\"\n[uncertainty]\nperturb = { P_y = \"3 px\" }\n");
+  Session session({.study = study.string(), .out = (folder.path() / "out").string()}, registry);
+  try {
+    static_cast<void>(Rig(session, assemble(session.model.request, session.registry)));
+    FAIL() << "P_y acts on nothing";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("nothing that is held in this study is called 'P_y'"));
+  }
+}
+
 }  // namespace
 }  // namespace misfit

@@ -22,7 +22,11 @@ bool is_camera(const std::string& name) {
 
 bool of_sweep(const std::string& name) { return name == "l_p" || name == "R1" || name == "R2" || name == "R3"; }
 
-bool any_track(const Study& study) { return std::any_of(study.experiments.begin(), study.experiments.end(), has_track); }
+/// Some experiment goes from a track through the camera: a film that the outputs read themselves does not.
+bool any_attitude(const Session& session) {
+  const auto& experiments = session.study.experiments;
+  return std::any_of(experiments.begin(), experiments.end(), [&](const ExperimentStudy& e) { return has_attitude(session, e); });
+}
 
 /// Sigmas in one of the numbers of the study.
 double divisor_of(const std::string& distribution) {
@@ -98,7 +102,7 @@ void Rig::list_known(Session& session, const Model& model) {
     if (p.curve < 0) known_[p.name] = {p.unit, p.value};
     if (p.curve < 0) nominal_.constants[p.name] = p.value;
   }
-  if (!any_track(session.study)) return;
+  if (!any_attitude(session)) return;
   nominal_.calibration = calibrate_stage(session);
   for (const RigEntry& entry : rig_entries()) {
     const bool used = !of_sweep(entry.name) || session.study.uncertainty->recalibrate;
