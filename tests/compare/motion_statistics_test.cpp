@@ -98,6 +98,31 @@ TEST(CompareMotion, MotionOfTheSameKindStaysInTheBand) {
   for (const auto& g : series.groups) EXPECT_GT(g.p_value, 0.01) << g.name;
 }
 
+TEST(CompareMotion, StatisticsThatTheMeasuredMotionDoesNotGiveAreNotCounted) {
+  const MotionPath measured = random_motion(1, 1.0);
+  const MotionScales scales = scales_of(measured, step);
+  MotionPath sparse = measured;  // single samples, 40 apart: no window is half full
+  for (std::size_t i = 0; i < sparse.values.size(); ++i) {
+    if (i % 40 != 0) sparse.values[i] = std::nan("");
+  }
+  std::vector<MotionNumbers> simulated;
+  for (unsigned k = 0; k < 19; ++k) simulated.push_back(motion_numbers(random_motion(100 + k, 1.0), scales));
+  MotionDistances distances;
+  SimulatedMotion motion;
+  motion.series = {compare_motion(sparse, scales, simulated, distances)};
+  EXPECT_EQ(distances.size(), motion.series[0].groups.size());
+  std::size_t known = 0;
+  for (const MotionGroup& g : motion.series[0].groups) {
+    EXPECT_NE(g.name, "amplitude");
+    for (const MotionNumber& n : g.numbers) known += std::isfinite(n.measured) ? 1 : 0;
+  }
+  EXPECT_LT(known, 60U) << "of lags only those of 40 samples exist";
+  motion.p_value = 1.0;
+  conclude_motion(motion);
+  EXPECT_THAT(motion.sentences.front(), testing::HasSubstr("over " + std::to_string(distances.size()) + " groups"));
+  EXPECT_THAT(motion.sentences.back(), testing::HasSubstr(" of " + std::to_string(known) + " statistics"));
+}
+
 TEST(CompareMotion, LargerMotionIsNamed) {
   SimulatedMotion motion;
   motion.runs = 99;

@@ -37,5 +37,23 @@ TEST(Diagnose, DoesNotDependOnThreads) {
   for (std::size_t i = 0; i < one.maps.size(); ++i) EXPECT_EQ(one.maps[i].chi2, two.maps[i].chi2);
 }
 
+/// Mean of −38 and −44, each ± 6, correlated by 0.8: sqrt((36 + 36 + 2 · 0.8 · 36)/4) = 5.69; independent they would give 4.2.
+TEST(WhereItFails, TheSigmaOfARunOfHatsHoldsTheirCorrelation) {
+  ForceMap map;
+  map.port = "M";
+  map.port_unit = "N m";
+  map.quantity = "V";
+  map.quantity_unit = "m/s";
+  map.x = {1.0, 2.0, 3.0};
+  map.amplitude = {-38.0, -44.0, 2.0};
+  map.sigma = {6.0, 6.0, 6.0};
+  Eigen::MatrixXd covariance = 36.0 * Eigen::MatrixXd::Identity(3, 3);
+  covariance(0, 1) = covariance(1, 0) = 0.8 * 36.0;
+  // The second hat alone is more significant, 44/6 = 7.3, than both together, 41/5.69 = 7.2.
+  EXPECT_EQ(where_it_fails(map, covariance), "the model's M is 44.0 ± 6.0 N m too high where V is between 1.5 m/s and 2.5 m/s");
+  map.amplitude[0] = -43.0;
+  EXPECT_EQ(where_it_fails(map, covariance), "the model's M is 43.5 ± 5.7 N m too high where V is between 0.5 m/s and 2.5 m/s");
+}
+
 }  // namespace
 }  // namespace misfit

@@ -61,6 +61,7 @@ TEST(ScoreTest, IsTheLeastSquaresAnswerForWhatIsAdded) {
   EXPECT_NEAR(score.adjusted_step(C, result.amplitude)[0], best[0], 1e-5);
   const Eigen::MatrixXd inverse = (all.transpose() * all).inverse();
   EXPECT_NEAR(result.sigma[0], std::sqrt(inverse(1, 1)), 1e-6);
+  EXPECT_LT((result.covariance - inverse.bottomRightCorner(2, 2)).norm(), 1e-6);
   EXPECT_LT((column.transpose() * score.projected(C)).norm(), 1e-3);
 }
 

@@ -70,6 +70,36 @@ TEST(BlockBootstrap, ScatterOfAMeanIsTheAnalyticOneOfDependentNoise) {
   }
 }
 
+/// The same with `apart` − 1 rows between two measurements in which nothing is measured.
+Signals measured_at_every(std::size_t apart, const Signals& dense) {
+  Signals out = dense;
+  out.t.clear();
+  auto& values = out.measured.front().values;
+  values.clear();
+  for (std::size_t i = 0; i < dense.samples() * apart; ++i) {
+    out.t.push_back(0.1 * static_cast<double>(i) / static_cast<double>(apart));
+    values.push_back(i % apart == 0 ? dense.measured.front().values[i / apart] : std::nan(""));
+  }
+  return out;
+}
+
+TEST(BlockBootstrap, RowsWithoutAMeasurementAreInNoBlocksLength) {
+  constexpr std::size_t samples = 1500;
+  for (const Resampled what : {Resampled::residuals, Resampled::rows}) {
+    double ratio = 0.0;
+    constexpr unsigned seeds = 6;
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+      BootstrapOptions options;
+      options.runs = 200;
+      const Signals dense = noise_about(2.0, 0.8, seed, samples), sparse = measured_at_every(4, dense);
+      const Bootstrap of_dense = bootstrap_of_mean({dense}, what, options), of_sparse = bootstrap_of_mean({sparse}, what, options);
+      EXPECT_EQ(of_sparse.block, of_dense.block);
+      ratio += of_sparse.numbers.front().sigma / of_dense.numbers.front().sigma / seeds;
+    }
+    EXPECT_NEAR(ratio, 1.0, 0.06) << (what == Resampled::rows ? "rows" : "residuals");
+  }
+}
+
 TEST(BlockBootstrap, SampleBySampleItMissesTheDependence) {
   constexpr std::size_t samples = 3000;
   BootstrapOptions options;
@@ -161,6 +191,37 @@ TEST(Resampler, MissingStaysMissingAndHeldOutStaysAsItIs) {
     }
   }
   EXPECT_GT(changed, 300);
+}
+
+/// Correlation of a channel's values with the next measured ones.
+double correlation_of_next(const std::vector<double>& values) {
+  double before = std::nan(""), products = 0.0, squares = 0.0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    if (std::isfinite(before)) products += before * v;
+    squares += v * v;
+    before = v;
+  }
+  return products / squares;
+}
+
+TEST(Resampler, ChannelsOfDifferentRatesKeepTheMemoryOfEach) {
+  Signals s = noise_about(0.0, 0.3, 7, 4000);
+  s.measured.push_back(measured_at_every(4, noise_about(0.0, 0.8, 8, 1000)).measured.front());
+  s.measured[1].name = "slow";
+  const std::vector<Signals> data{s};
+  Fit fit;
+  for (const Signal& channel : s.measured)
+    fit.predictions.push_back({s.name, channel.name, "-", s.t, channel.values, std::vector<double>(4000, 0.0), {}, {}});
+  const Resampler resampler(Resampled::residuals, fit, data);
+  std::mt19937_64 random(1);
+  const Signals drawn = resampler.draw(random).front();
+  EXPECT_GE(resampler.block(), 5 * 4 * 5) << "five times the memory of the slow channel, in samples of both";
+  for (std::size_t o = 0; o < 2; ++o) {
+    const auto& before = s.measured[o].values;
+    EXPECT_NEAR(correlation_of_next(drawn.measured[o].values), correlation_of_next(before), 0.1) << s.measured[o].name;
+    for (std::size_t i = 0; i < s.samples(); ++i) EXPECT_EQ(std::isnan(drawn.measured[o].values[i]), std::isnan(before[i])) << i;
+  }
 }
 
 /// Samples of blocks that are fitted: those that count, and those that a fit would take though they are held out in the whole.

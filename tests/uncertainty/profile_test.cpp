@@ -78,6 +78,12 @@ TEST(Profile, ABoundAFailureAndAFlatSideAreSaid) {
   EXPECT_THAT(flat.words, testing::Contains(testing::HasSubstr("flat")));
 }
 
+TEST(Profile, WhereASideEndsIsSaidInTheUnitThatIsShown) {
+  auto failing = request(0.0, 0.1, 0.1, [](double v) { return v > 0.09 ? std::nullopt : std::optional(-50.0 * v * v); });
+  failing.unit = "rad";
+  EXPECT_THAT(profile(failing).words, testing::Contains(testing::HasSubstr("at 5.7296 deg the model cannot be estimated")));
+}
+
 TEST(Profile, AHigherLikelihoodBesideTheEstimateIsSaid) {
   auto r = request(0.0, 1.0, 1.0, [](double v) { return std::optional(-0.5 * (v - 1.0) * (v - 1.0)); });
   EXPECT_THAT(profile(r).words, testing::Contains(testing::HasSubstr("had not reached its maximum")));
@@ -117,7 +123,8 @@ TEST(Profile, ALikelihoodThatOnlyRisesHasNoEnd) {
   EXPECT_LT(p.lower, 0.0);
   EXPECT_FALSE(p.upper_found);
   EXPECT_GT(p.upper, 0.0);
-  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("no upper end")));
+  EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("no upper end: the likelihood is higher there than at the estimate")));
+  EXPECT_THAT(p.words, testing::Not(testing::Contains(testing::HasSubstr("flat"))));
   EXPECT_THAT(p.words, testing::Contains(testing::HasSubstr("had not reached its maximum")));
 }
 

@@ -192,7 +192,7 @@ void test_disabled_parameters(const Sweep& sweep, const RigGeometry& geometry, c
 Calibration calibrate(const Sweep& sweep, const RigGeometry& geometry, const CalibrateOptions& options) {
   try {
     Calibration calibration = calibrate_once(sweep, geometry, options);
-    test_disabled_parameters(sweep, geometry, options, calibration);
+    if (options.test_others) test_disabled_parameters(sweep, geometry, options, calibration);
     return calibration;
   } catch (const RunError& error) {
     if (sweep.source.empty()) throw;

@@ -21,6 +21,7 @@ struct CalibrateOptions {
   std::vector<std::string> candidates = optional_camera_parameters();  ///< freed only where the sweep supports them
   std::vector<std::string> force;                                      ///< freed whatever the test says
   std::map<std::string, double> fixed;  ///< values of camera_parameter_names that stay where they are not freed, SI
+  bool test_others = true;              ///< those neither offered nor freed: significant ones are noted, at the price of a second fit
   double threshold = 1e-3;              ///< corrected p-value below which a candidate is selected
   double outlier_limit = 4.0;           ///< a point farther off than this many robust sigmas, in either coordinate, is set aside
 };

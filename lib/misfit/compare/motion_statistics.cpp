@@ -211,16 +211,17 @@ MotionNumbers motion_numbers(const MotionPath& path, const MotionScales& scales)
 MotionSeries compare_motion(const MotionPath& measured, const MotionScales& scales, const std::vector<MotionNumbers>& simulated,
                             MotionDistances& distances) {
   const MotionNumbers numbers = motion_numbers(measured, scales);
-  MotionSeries out{"", measured.name, measured.unit, empty_groups(measured, scales)};
+  MotionSeries out{"", measured.name, measured.unit, {}};
   constexpr double edge = 0.025;
-  for (std::size_t g = 0; g < out.groups.size(); ++g) {
-    MotionGroup& group = out.groups[g];
-    distances.emplace_back(simulated.size() + 1, 0.0);
+  std::vector<MotionGroup> groups = empty_groups(measured, scales);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    MotionGroup& group = groups[g];
+    std::vector<double> of_group(simulated.size() + 1, 0.0);
     for (std::size_t j = 0; j < group.numbers.size(); ++j) {
       MotionNumber& n = group.numbers[j];
       std::vector<double> motions{numbers[g][j]};
       for (const auto& run : simulated) motions.push_back(run[g][j]);
-      add_distances(motions, distances.back());
+      if (std::isfinite(motions.front())) add_distances(motions, of_group);
       const std::vector<double> runs = finite_sorted({motions.begin() + 1, motions.end()});
       n.measured = motions.front();
       n.low = quantile(runs, edge);
@@ -228,7 +229,10 @@ MotionSeries compare_motion(const MotionPath& measured, const MotionScales& scal
       n.high = quantile(runs, 1.0 - edge);
       n.outside = n.measured < n.low || n.measured > n.high;
     }
-    group.p_value = rank_p_value(distances.back());
+    if (std::none_of(group.numbers.begin(), group.numbers.end(), is_known)) continue;
+    group.p_value = rank_p_value(of_group);
+    out.groups.push_back(std::move(group));
+    distances.push_back(std::move(of_group));
   }
   return out;
 }
@@ -252,7 +256,7 @@ void conclude_motion(SimulatedMotion& motion) {
   for (const MotionSeries& s : motion.series) {
     for (const MotionGroup& g : s.groups) {
       ++groups;
-      numbers += g.numbers.size();
+      numbers += std::count_if(g.numbers.begin(), g.numbers.end(), is_known);
       outside += std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
       if (g.p_value <= significant)
         departing.push_back(fmt::format("the {} of {} ({}): {}; {}", g.name, s.name, s.experiment, p_equals(g.p_value), worst_of(g)));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -14,6 +15,11 @@ struct MotionNumber {
   double low = 0.0, median = 0.0, high = 0.0;  ///< 2.5 %, 50 % and 97.5 % of the simulated runs
   bool outside = false;                        ///< measured < low or measured > high: by chance in 5 % of the numbers
 };
+
+/// The measured motion gives it, and simulated ones: it is not that of too few samples.
+[[nodiscard]] inline bool is_known(const MotionNumber& n) {
+  return std::isfinite(n.measured) && std::isfinite(n.low) && std::isfinite(n.high);
+}
 
 /// Statistics that belong together.
 struct MotionGroup {

@@ -38,38 +38,45 @@ ForceMap beside_other_hours(ForceMap map) {
   return map;
 }
 
-/// A sentence on the most significant run of neighbouring hats of one sign; where none is significant by itself, of the whole.
-std::string where_it_fails(const ForceMap& map) {
+/// Of neighbouring hats: mean by their own sigmas, and its variance with what they have in common.
+struct RunMean {
+  double value = 0.0, variance = 0.0;
+  [[nodiscard]] double chi2() const { return variance > 0.0 ? value * value / variance : 0.0; }
+};
+
+RunMean mean_of(const ForceMap& map, const Eigen::MatrixXd& covariance, std::size_t from, std::size_t to) {
+  const auto first = static_cast<Eigen::Index>(from), count = static_cast<Eigen::Index>(to - from + 1);
+  const Eigen::VectorXd weights = Eigen::Map<const Eigen::VectorXd>(map.sigma.data() + first, count).array().square().inverse();
+  const Eigen::VectorXd w = weights / weights.sum();
+  return {w.dot(Eigen::Map<const Eigen::VectorXd>(map.amplitude.data() + first, count)),
+          w.dot(covariance.block(first, first, count, count) * w)};
+}
+
+}  // namespace
+
+std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covariance) {
   std::size_t best_from = 0, best_to = 0;
-  double best = 0.0;
+  RunMean best;
   for (std::size_t from = 0; from < map.x.size(); ++from) {
-    double weight = 0.0, sum = 0.0;
     for (std::size_t to = from; to < map.x.size() && map.sigma[to] > 0.0 && map.amplitude[to] * map.amplitude[from] > 0.0; ++to) {
       if (std::abs(map.amplitude[to]) < 1.5 * map.sigma[to]) break;
-      weight += 1.0 / (map.sigma[to] * map.sigma[to]);
-      sum += map.amplitude[to] / (map.sigma[to] * map.sigma[to]);
-      const double score = sum * sum / weight;
-      if (score > best) {
-        best = score;
-        best_from = from;
-        best_to = to;
-      }
+      const RunMean mean = mean_of(map, covariance, from, to);
+      if (mean.chi2() <= best.chi2()) continue;
+      best = mean;
+      best_from = from;
+      best_to = to;
     }
   }
-  if (!(best > 0.0))
+  if (!(best.chi2() > 0.0))
     return "the model's " + map.port + " depends otherwise on " + map.quantity +
            " than the data say, though no range of it stands out: the values of the map are correlated";
-  double weight = 0.0, sum = 0.0;
-  for (std::size_t i = best_from; i <= best_to; ++i) {
-    weight += 1.0 / (map.sigma[i] * map.sigma[i]);
-    sum += map.amplitude[i] / (map.sigma[i] * map.sigma[i]);
-  }
-  const double value = sum / weight, sigma = 1.0 / std::sqrt(weight);
   const double half = map.x.size() > 1 ? 0.5 * (map.x[1] - map.x[0]) : 0.0;
-  return "the model's " + map.port + " is " + in_display_unit(std::abs(value), map.port_unit, sigma) +
-         (value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
+  return "the model's " + map.port + " is " + in_display_unit(std::abs(best.value), map.port_unit, std::sqrt(best.variance)) +
+         (best.value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
          place(map.x[best_from] - half, half, map.quantity_unit) + " and " + place(map.x[best_to] + half, half, map.quantity_unit);
 }
+
+namespace {
 
 /// What missing forces are sought with: score test of the estimate, sensitivity to a force, and the quantities over which it may vary.
 struct Search {
@@ -79,7 +86,13 @@ struct Search {
   const std::vector<Features>& features;
 };
 
-ForceMap map_of(const Search& search, const Features& features, int port) {
+/// A map and the covariance of its amplitudes.
+struct SolvedMap {
+  ForceMap map;
+  Eigen::MatrixXd covariance;
+};
+
+SolvedMap map_of(const Search& search, const Features& features, int port) {
   const SystemSpec& spec = search.spec;
   ForceMap map;
   map.port = spec.dynamic_ports[port].name;
@@ -88,24 +101,27 @@ ForceMap map_of(const Search& search, const Features& features, int port) {
   map.quantity_unit = features.unit;
   map.x = features.centre;
   map.count = features.count;
-  const ScoreResult result = search.score.test(search.force.columns(port, features.f, features.ahead));
+  ScoreResult result = search.score.test(search.force.columns(port, features.f, features.ahead));
   map.amplitude.assign(result.amplitude.data(), result.amplitude.data() + result.amplitude.size());
   map.sigma.assign(result.sigma.data(), result.sigma.data() + result.sigma.size());
   map.chi2 = result.chi2;
   map.dof = result.dof;
   map.p_value = result.dof > 0 ? chi_square_tail(result.chi2, result.dof) : 1.0;
-  return map;
+  return {std::move(map), std::move(result.covariance)};
 }
 
 std::vector<ForceMap> all_maps(const Search& search, const DiagnoseOptions& options) {
   const std::size_t ports = search.spec.dynamic_ports.size();
-  std::vector<ForceMap> maps(ports * search.features.size());
+  std::vector<SolvedMap> solved(ports * search.features.size());
   run_jobs(
-      maps.size(), options.threads,
-      [&](std::size_t k) { maps[k] = map_of(search, search.features[k / ports], static_cast<int>(k % ports)); }, options.progress);
-  for (auto& map : maps) {
-    map.p_corrected = sidak(map.p_value, static_cast<double>(maps.size()));
-    if (map.p_corrected < significant) map.sentence = where_it_fails(map.quantity == time_of_day ? beside_other_hours(map) : map);
+      solved.size(), options.threads,
+      [&](std::size_t k) { solved[k] = map_of(search, search.features[k / ports], static_cast<int>(k % ports)); }, options.progress);
+  std::vector<ForceMap> maps;
+  for (auto& [map, covariance] : solved) {
+    map.p_corrected = sidak(map.p_value, static_cast<double>(solved.size()));
+    if (map.p_corrected < significant)
+      map.sentence = where_it_fails(map.quantity == time_of_day ? beside_other_hours(map) : map, covariance);
+    maps.push_back(std::move(map));
   }
   std::stable_sort(maps.begin(), maps.end(), [](const ForceMap& a, const ForceMap& b) { return a.p_value < b.p_value; });
   return maps;
@@ -149,7 +165,8 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
   map.chi2 = result.chi2;
   map.dof = result.dof;
   map.p_value = result.dof > 0 ? chi_square_tail(result.chi2, result.dof) : 1.0;
-  map.p_corrected = map.p_value;
+  const auto quantities = static_cast<double>(features.size());
+  map.p_corrected = sidak(map.p_value, static_cast<double>(spec.dynamic_ports.size()) * quantities * (quantities - 1.0) / 2.0);
   out.push_back(std::move(map));
   return out;
 }

@@ -20,4 +20,8 @@ struct DiagnoseOptions {
 /// [HK], the smoothed missing force, and the conclusions in plain sentences.
 [[nodiscard]] Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& options = {});
 
+/// A sentence on the most significant run of neighbouring hats of one sign, with its mean and ± one sigma; where none is significant by
+/// itself, of the whole. `covariance`: of the amplitudes.
+[[nodiscard]] std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covariance);
+
 }  // namespace misfit

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
-#include "misfit/core/lists.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/inference/states.h"
 #include "misfit/math/statistics.h"
@@ -15,19 +15,30 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Standardised innovations of one channel; NaN where there is none.
-std::vector<double> standardised(const FilterTrace& trace, const FilterData& data, std::size_t channel) {
+/// Standardised innovations of one channel that count.
+struct StandardisedSeries {
+  std::vector<double> t, w;
+};
+
+StandardisedSeries standardised(const FilterTrace& trace, const FilterData& data, std::size_t channel) {
   const std::size_t ny = trace.ny;
-  std::vector<double> out(trace.samples, std::nan(""));
+  StandardisedSeries out;
   for (std::size_t k = 0; k < trace.samples; ++k) {
     const std::size_t at = k * ny + channel;
-    if (data.use[at] == SampleRole::counted) out[k] = trace.e[at] / std::sqrt(trace.S[at]);
+    if (data.use[at] != SampleRole::counted) continue;
+    out.t.push_back(data.signals->t[k]);
+    out.w.push_back(trace.e[at] / std::sqrt(trace.S[at]));
   }
   return out;
 }
 
+struct Periodogram {
+  std::vector<double> frequency, power;
+};
+
 /// Power of white noise is 1 on average. Goertzel-free: direct sums by rotation, exact enough for the few thousand samples of a recording.
-void periodogram(const std::vector<double>& w, double step, WhitenessReport& out) {
+Periodogram periodogram(const std::vector<double>& w, double step) {
+  Periodogram out;
   const std::size_t n = w.size(), half = (n - 1) / 2;
   for (std::size_t j = 1; j <= half; ++j) {
     const double angle = 2.0 * pi * static_cast<double>(j) / static_cast<double>(n);
@@ -43,6 +54,7 @@ void periodogram(const std::vector<double>& w, double step, WhitenessReport& out
     out.frequency.push_back(static_cast<double>(j) / (static_cast<double>(n) * step));
     out.power.push_back((re * re + im * im) / static_cast<double>(n));
   }
+  return out;
 }
 
 /// Kolmogorov's tail: P(sqrt(m) D > x).
@@ -53,15 +65,22 @@ double kolmogorov_tail(double x) {
   return std::clamp(sum, 0.0, 1.0);
 }
 
-void judge_lines(WhitenessReport& out) {
-  double total = 0.0;
-  for (double p : out.power) total += p;
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+void judge_highest_line(const Periodogram& lines, WhitenessReport& out) {
+  const double total = sum_of(lines.power);
   if (!(total > 0.0)) return;
-  const auto m = static_cast<double>(out.power.size());
-  const auto highest = std::max_element(out.power.begin(), out.power.end());
-  out.peak_frequency = out.frequency[highest - out.power.begin()];
+  const auto m = static_cast<double>(lines.power.size());
+  const auto highest = std::max_element(lines.power.begin(), lines.power.end());
+  out.peak_frequency = lines.frequency[highest - lines.power.begin()];
   out.peak_power = *highest * m / total;
   out.peak_p = sidak(std::exp(-out.peak_power), m);
+}
+
+void judge_cumulative(WhitenessReport& out) {
+  const double total = sum_of(out.power);
+  if (!(total > 0.0)) return;
+  const auto m = static_cast<double>(out.power.size());
   double sum = 0.0, largest = 0.0;
   for (std::size_t j = 0; j < out.power.size(); ++j) {
     sum += out.power[j];
@@ -70,64 +89,101 @@ void judge_lines(WhitenessReport& out) {
   out.periodogram_p = kolmogorov_tail(std::sqrt(m) * largest);
 }
 
+/// Innovations closed up over gaps are as white as without gaps, but zeros in the gaps would leave fewer independent lines than there are
+/// frequencies. A line, however, has its frequency in time, gaps included (as long as they are not most of it); its largest power hardly
+/// depends on them.
+void judge_lines(const StandardisedSeries& of, const std::vector<double>& on_grid, WhitenessReport& out) {
+  const double step = usual_step(of.t);
+  Periodogram closed_up = periodogram(of.w, step);
+  if (on_grid.size() > of.w.size() && on_grid.size() <= 2 * of.w.size()) {
+    std::vector<double> filled = on_grid;
+    for (double& v : filled) v = std::isfinite(v) ? v : 0.0;
+    judge_highest_line(periodogram(filled, step), out);
+  } else {
+    judge_highest_line(closed_up, out);
+  }
+  out.frequency = std::move(closed_up.frequency);
+  out.power = std::move(closed_up.power);
+  judge_cumulative(out);
+}
+
+constexpr std::size_t fewest_innovations = 100;
+
 }  // namespace
 
-std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate) {
+WhitenessReport whiteness_of(const std::vector<double>& t, const std::vector<double>& innovations) {
   constexpr int lags = 40;
+  const std::size_t known = innovations.size();
+  WhitenessReport report;
+  report.lags = std::min(lags, static_cast<int>(known / 10));
+  const std::vector<double> on_grid = on_even_grid(t, innovations);
+  report.autocorrelation = autocorrelation(on_grid, report.lags);
+  report.band = 1.96 / std::sqrt(static_cast<double>(known));
+  const WhitenessTest test = whiteness(on_grid, 1, report.lags);
+  report.ljung_box = test.statistic;
+  report.ljung_box_p = test.p_value;
+  judge_lines({t, innovations}, on_grid, report);
+  return report;
+}
+
+std::vector<WhitenessReport> whiteness_of(const FilterEstimate& estimate) {
   std::vector<WhitenessReport> out;
   const auto& outputs = estimate.model.system->spec().outputs;
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     for (std::size_t o = 0; o < outputs.size(); ++o) {
-      std::vector<double> w = standardised(estimate.traces[e], estimate.data[e], o);
-      const std::size_t known = count_finite(w);
-      if (known < 100) continue;
-      WhitenessReport report;
+      const StandardisedSeries counted = standardised(estimate.traces[e], estimate.data[e], o);
+      if (counted.w.size() < fewest_innovations) continue;
+      WhitenessReport report = whiteness_of(counted.t, counted.w);
       report.experiment = estimate.data[e].signals->name;
       report.channel = outputs[o].name;
-      report.lags = std::min(lags, static_cast<int>(known / 10));
-      const std::vector<double> even = on_even_grid(estimate.data[e].signals->t, w);
-      report.autocorrelation = autocorrelation(even, report.lags);
-      report.band = 1.96 / std::sqrt(static_cast<double>(known));
-      const WhitenessTest test = whiteness(even, 1, report.lags);
-      report.ljung_box = test.statistic;
-      report.ljung_box_p = test.p_value;
-      for (double& v : w) {
-        if (!std::isfinite(v)) v = 0.0;
-      }
-      periodogram(w, usual_step(estimate.data[e].signals->t), report);
-      judge_lines(report);
       out.push_back(std::move(report));
     }
   }
   return out;
 }
 
+namespace {
+
+/// Squares of standardised innovations, one after the other in time.
+struct Squares {
+  std::vector<double> value, t;
+};
+
+Squares squares_of(const FilterTrace& trace, const FilterData& data) {
+  const std::size_t ny = trace.ny;
+  Squares out;
+  for (std::size_t i = data.first * ny; i < trace.samples * ny; ++i) {
+    if (data.use[i] == SampleRole::none || !(trace.S[i] > 0.0)) continue;
+    out.value.push_back(trace.e[i] * trace.e[i] / trace.S[i]);
+    out.t.push_back(data.signals->t[i / ny]);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<NisSeries> nis_of(const FilterEstimate& estimate) {
   std::vector<NisSeries> out;
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
-    const FilterTrace& trace = estimate.traces[e];
-    const FilterData& data = estimate.data[e];
-    const std::size_t ny = trace.ny;
+    const std::size_t channels = estimate.traces[e].ny;
+    const Squares squares = squares_of(estimate.traces[e], estimate.data[e]);
+    constexpr std::size_t windows = 80, fewest_per_channel = 20;
+    const std::size_t count = channels * std::max(fewest_per_channel, squares.value.size() / (windows * channels));
+    if (squares.value.size() < count) continue;
     NisSeries series;
-    series.experiment = data.signals->name;
-    const std::size_t window = std::max<std::size_t>(20, trace.samples / 80);
-    double outside = 0.0;
-    for (std::size_t from = data.first; from + window <= trace.samples; from += window) {
-      double sum = 0.0, count = 0.0;
-      for (std::size_t i = from * ny; i < (from + window) * ny; ++i) {
-        if (data.use[i] == SampleRole::none || !(trace.S[i] > 0.0)) continue;
-        sum += trace.e[i] * trace.e[i] / trace.S[i];
-        count += 1.0;
-      }
-      if (count < static_cast<double>(window)) continue;
-      series.t.push_back(data.signals->t[from + window / 2]);
-      series.nis.push_back(sum / count);
-    }
-    const double spread = 1.96 * std::sqrt(2.0 / static_cast<double>(window * ny));
+    series.experiment = estimate.data[e].signals->name;
+    const double spread = 1.96 * std::sqrt(2.0 / static_cast<double>(count));
     series.lower = 1.0 - spread;
     series.upper = 1.0 + spread;
-    for (double v : series.nis) outside += v < series.lower || v > series.upper ? 1.0 : 0.0;
-    series.outside = series.nis.empty() ? 0.0 : outside / static_cast<double>(series.nis.size());
+    double outside = 0.0;
+    for (std::size_t from = 0; from + count <= squares.value.size(); from += count) {
+      const auto first = squares.value.begin() + static_cast<std::ptrdiff_t>(from);
+      const double nis = std::accumulate(first, first + static_cast<std::ptrdiff_t>(count), 0.0) / static_cast<double>(count);
+      series.t.push_back(squares.t[from + count / 2]);
+      series.nis.push_back(nis);
+      outside += nis < series.lower || nis > series.upper ? 1.0 : 0.0;
+    }
+    series.outside = outside / static_cast<double>(series.nis.size());
     out.push_back(std::move(series));
   }
   return out;

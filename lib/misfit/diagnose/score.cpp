@@ -105,7 +105,8 @@ void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::
   const Eigen::MatrixXd correlation = scale.asDiagonal() * A * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
   const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * (scale.asDiagonal() * Eigen::VectorXd(s(columns)));
-  Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(A.rows()), variance = Eigen::VectorXd::Zero(A.rows());
+  Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(A.rows());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(A.rows(), A.rows());
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     constexpr double min_eigenvalue = 1e-6;  // below, columns are linearly dependent
     const double value = eigen.eigenvalues()[i];
@@ -114,11 +115,13 @@ void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::
     out.chi2 += rotated[i] * rotated[i] / value;
     constexpr double min_seen = 1e-4;  // (1/100)²
     if (value < min_seen) continue;
-    amplitude += eigen.eigenvectors().col(i) * (rotated[i] / value);
-    variance += eigen.eigenvectors().col(i).cwiseAbs2() / value;
+    const auto vector = eigen.eigenvectors().col(i);
+    amplitude += vector * (rotated[i] / value);
+    covariance += vector * vector.transpose() / value;
   }
   out.amplitude(columns) = scale.cwiseProduct(amplitude);
-  out.sigma(columns) = scale.cwiseProduct(variance.cwiseSqrt());
+  out.sigma(columns) = scale.cwiseProduct(covariance.diagonal().cwiseSqrt());
+  out.covariance(columns, columns) = scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
 }  // namespace
@@ -126,6 +129,7 @@ void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::
 ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors) const {
   ScoreResult out;
   out.amplitude = out.sigma = Eigen::VectorXd::Zero(C.cols());
+  out.covariance = Eigen::MatrixXd::Zero(C.cols(), C.cols());
   Eigen::MatrixXd V = C.transpose() * C;
   Eigen::VectorXd s = -C.transpose() * r_;
   const Eigen::VectorXd unadjusted = V.diagonal();

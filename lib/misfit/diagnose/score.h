@@ -11,11 +11,12 @@
 namespace misfit {
 
 struct ScoreResult {
-  double chi2 = 0.0;          ///< sᵀ V⁻¹ s: also the predicted drop, one Gauss–Newton step [R]
-  int dof = 0;                ///< rank of the columns' information, free parameters projected out
-  Eigen::VectorXd amplitude;  ///< one Gauss–Newton step; 0 where unknown
-  Eigen::VectorXd sigma;      ///< of each
-  double independent = 0.0;   ///< smallest 1 − R² of a column on the free ones: below 0.01 the model already describes it
+  double chi2 = 0.0;           ///< sᵀ V⁻¹ s: also the predicted drop, one Gauss–Newton step [R]
+  int dof = 0;                 ///< rank of the columns' information, free parameters projected out
+  Eigen::VectorXd amplitude;   ///< one Gauss–Newton step; 0 where unknown
+  Eigen::VectorXd sigma;       ///< of each
+  Eigen::MatrixXd covariance;  ///< of all
+  double independent = 0.0;    ///< smallest 1 − R² of a column on the free ones: below 0.01 the model already describes it
 };
 
 /// Score tests for further columns of whitened derivatives with the estimate's free parameters projected out.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
@@ -198,14 +200,22 @@ Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness) {
   figure.x_label = "frequency";
   figure.x_unit = "Hz";
   Panel panel{"cumulative power", "-", {}, std::array<double, 2>{0.0, 1.0}, 0.25, 320.0, false, {}};
+  std::set<std::pair<std::size_t, double>> bands;
   for (std::size_t k = 0; k < whiteness.size(); ++k) {
     const WhitenessReport& w = whiteness[k];
     if (w.frequency.empty()) continue;
-    if (panel.series.empty()) {
-      const double half = 1.36 / std::sqrt(static_cast<double>(w.frequency.size()));
-      const double last = w.frequency.back();
-      panel.series.push_back(
-          {"white", "band of white innovations", Style::band, grey, {0.0, last}, {}, {-half, 1.0 - half}, {half, 1.0 + half}});
+    const std::pair of_band{w.frequency.size(), w.frequency.back()};  // how many innovations, how often
+    if (bands.insert(of_band).second) {
+      const double half = 1.36 / std::sqrt(static_cast<double>(of_band.first));
+      const bool first = bands.size() == 1;
+      panel.series.push_back({first ? "white" : fmt::format("white_{}", bands.size()),
+                              first ? "band of white innovations" : "",
+                              Style::band,
+                              grey,
+                              {0.0, of_band.second},
+                              {},
+                              {-half, 1.0 - half},
+                              {half, 1.0 + half}});
     }
     double total = 0.0, sum = 0.0;
     for (const double p : w.power) total += std::isfinite(p) ? p : 0.0;

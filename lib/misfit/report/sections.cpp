@@ -105,7 +105,10 @@ void simulated_section(const ReportInput& input, Page& page, const Draw& draw) {
   }
   page.show(blocks_of(motion), [&](const std::string&) {
     for (const std::string& experiment : experiments) {
-      for (const char* group : {"distribution", "autocorrelation", "spectrum"}) draw(simulated_figure(motion, experiment, group));
+      for (const char* group : {"distribution", "autocorrelation", "spectrum"}) {
+        const Figure figure = simulated_figure(motion, experiment, group);
+        if (!figure.panels.empty()) draw(figure);  // a recording may be too short for a statistic
+      }
     }
   });
 }

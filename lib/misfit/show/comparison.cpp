@@ -36,12 +36,13 @@ void add_group(const MotionSeries& s, const MotionGroup& g, TableBlock& table) {
   std::string p = fmt::format("{:.3f}", g.p_value);
   if (g.name == "autocorrelation" || g.name == "spectrum") {
     const auto outside = std::count_if(g.numbers.begin(), g.numbers.end(), [](const MotionNumber& n) { return n.outside; });
-    table.rows.push_back({name, g.name, fmt::format("{} of {} outside", outside, g.numbers.size()), "", "", p});
+    const auto known = std::count_if(g.numbers.begin(), g.numbers.end(), is_known);
+    table.rows.push_back({name, g.name, fmt::format("{} of {} outside", outside, known), "", "", p});
     return;
   }
   for (const MotionNumber& n : g.numbers) {
     const bool always = n.name == "mean" || n.name == "standard deviation" || n.at == 0.05 || n.at == 0.5 || n.at == 0.95;
-    if (!always && !n.outside) continue;
+    if (!is_known(n) || (!always && !n.outside)) continue;
     const bool level = is_level(g, n);
     const auto number = [&](double value) { return short_number(level ? display_level(value, g.unit) : display_value(value, g.unit)); };
     const auto with_unit = [&](const std::string& text) { return level ? with_level_unit(text, g.unit) : with_display_unit(text, g.unit); };

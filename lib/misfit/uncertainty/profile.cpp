@@ -37,7 +37,7 @@ class Search {
       const double next = kept_inside(inside + direction_ * step);
       if (next == inside) return ended(inside, "the bound of " + request_.parameter + " is reached first");
       const std::optional<double> root = root_at(next);
-      if (!root) return ended(inside, "at " + format_value(next) + " the model cannot be estimated");
+      if (!root) return ended(inside, "at " + in_display_unit(next, request_.unit) + " the model cannot be estimated");
       if (*root >= std::sqrt(limit_)) {  // a rise of the likelihood, below 0, is no crossing however large
         refine(inside, inside_root, next, *root);
         return side_;
@@ -49,7 +49,7 @@ class Search {
       inside = next;
       inside_root = *root;
     }
-    return ended(inside, "the likelihood stays flat");
+    return ended(inside, inside_root < 0.0 ? "the likelihood is higher there than at the estimate" : "the likelihood stays flat");
   }
 
  private:
@@ -89,7 +89,7 @@ class Search {
     side_.end = inside + (wanted - inside_root) / (outside_root - inside_root) * (outside - inside);
     side_.found = off < rough_crossing;
     if (!side_.found)
-      ended(inside, "between " + format_value(inside) + " and " + format_value(outside) +
+      ended(inside, "between " + in_display_unit(inside, request_.unit) + " and " + in_display_unit(outside, request_.unit) +
                         " the profile is discontinuous or failed: refits reach different maxima");
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "misfit/core/error.h"
 #include "misfit/math/spectrum.h"
@@ -11,10 +12,13 @@ namespace {
 
 constexpr std::size_t min_samples = 16;  // samples: fewer show no autocorrelation and cannot be resampled
 
-bool counts(const Signals& s, std::size_t i) {
-  if (i < s.exclude || s.held_out(i)) return false;
-  return std::all_of(s.measured.begin(), s.measured.end(), [&](const Signal& channel) { return std::isfinite(channel.values[i]); });
+/// Any channel is measured there, and may be drawn anew.
+bool measured(const Signals& s, std::size_t i) {
+  if (s.held_out(i)) return false;
+  return std::any_of(s.measured.begin(), s.measured.end(), [&](const Signal& channel) { return std::isfinite(channel.values[i]); });
 }
+
+bool counts(const Signals& s, std::size_t i) { return i >= s.exclude && measured(s, i); }
 
 const ChannelPrediction& prediction_of(const Fit& fit, const Signals& experiment, const Signal& channel) {
   for (const auto& p : fit.predictions) {
@@ -23,22 +27,34 @@ const ChannelPrediction& prediction_of(const Fit& fit, const Signals& experiment
   throw RunError("bootstrap: the fit of " + fit.method + " does not predict " + channel.name + " of experiment '" + experiment.name + "'");
 }
 
-/// Lag up to which series in a pool remember; `pool`: sample → value per channel.
+/// Lag up to which series in a pool remember; `pool`: sample → value per channel, NaN where it is not known.
 int memory_in(const std::vector<std::vector<double>>& pool) {
   const std::ptrdiff_t n = std::ssize(pool), channels = std::ssize(pool.front());
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(n, channels), known = values;
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    for (Eigen::Index o = 0; o < channels; ++o) {
+      if (!std::isfinite(pool[i][o])) continue;
+      values(i, o) = pool[i][o];
+      known(i, o) = 1.0;
+    }
+  }
   constexpr std::ptrdiff_t max_lag = 400;
   const std::ptrdiff_t lags = std::min(max_lag, n / 3);
-  LagProducts products(lags + 1, Eigen::MatrixXd::Zero(channels, channels)), pairs = products;
+  LagProducts products, pairs;
   for (std::ptrdiff_t k = 0; k <= lags; ++k) {
-    auto& sums = products[k];
-    for (std::ptrdiff_t i = 0; i + k < n; ++i) {
-      for (Eigen::Index a = 0; a < channels; ++a) {
-        for (Eigen::Index b = 0; b < channels; ++b) sums(a, b) += pool[i][a] * pool[i + k][b];
-      }
-    }
-    pairs[k].setConstant(static_cast<double>(n - k));
+    products.emplace_back(values.topRows(n - k).transpose() * values.bottomRows(n - k));
+    pairs.emplace_back(known.topRows(n - k).transpose() * known.bottomRows(n - k));
   }
   return correlation_length(products, pairs, 1);
+}
+
+/// Samples at which all of these channels are known.
+std::vector<std::size_t> known_in(const std::vector<std::vector<double>>& pool, const std::vector<std::size_t>& channels) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    if (std::all_of(channels.begin(), channels.end(), [&](std::size_t o) { return std::isfinite(pool[i][o]); })) out.push_back(i);
+  }
+  return out;
 }
 
 }  // namespace
@@ -90,7 +106,7 @@ void Resampler::collect_equations(const EquationResiduals& equations) {
 
 void Resampler::collect_residuals(const Fit& fit) {
   const std::size_t channels = experiments_.front().measured.size();
-  std::vector<double> mean(channels, 0.0);
+  std::vector<double> sum(channels, 0.0), known(channels, 0.0);
   for (const auto& e : experiments_) {
     std::vector<const ChannelPrediction*> from;
     for (const auto& channel : e.measured) from.push_back(&prediction_of(fit, e, channel));
@@ -99,16 +115,34 @@ void Resampler::collect_residuals(const Fit& fit) {
     for (std::size_t i = 0; i < e.samples(); ++i) {
       if (!counts(e, i)) continue;
       auto& here = pool_.emplace_back();
-      for (std::size_t o = 0; o < channels; ++o) here.push_back(e.measured[o].values[i] - from[o]->predicted[i]);
-      for (std::size_t o = 0; o < channels; ++o) mean[o] += here[o] / static_cast<double>(counted_);
+      for (std::size_t o = 0; o < channels; ++o) {
+        here.push_back(e.measured[o].values[i] - from[o]->predicted[i]);
+        if (std::isfinite(here[o])) sum[o] += here[o], known[o] += 1.0;
+      }
     }
   }
   for (std::size_t o = 0; o < channels; ++o) {
     const auto noise = fit.noise.find(experiments_.front().measured[o].name), rms = fit.rms.find(experiments_.front().measured[o].name);
-    const bool known = noise != fit.noise.end() && rms != fit.rms.end() && rms->second.value > 0.0;
+    const bool known_sizes = noise != fit.noise.end() && rms != fit.rms.end() && rms->second.value > 0.0;
     constexpr double max_factor = 1.5;
-    const double factor = known ? std::clamp(noise->second.value / rms->second.value, 1.0, max_factor) : 1.0;
-    for (auto& residual : pool_) residual[o] = factor * (residual[o] - mean[o]);
+    const double factor = known_sizes ? std::clamp(noise->second.value / rms->second.value, 1.0, max_factor) : 1.0;
+    for (auto& residual : pool_) residual[o] = factor * (residual[o] - sum[o] / known[o]);
+  }
+  group_channels(channels);
+}
+
+void Resampler::group_channels(std::size_t channels) {
+  std::vector<std::size_t> all(channels);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<std::size_t> known = known_in(pool_, all);
+  constexpr double together = 0.9;  // of the samples: else blocks of those would be of other lengths in time than in a channel
+  if (static_cast<double>(known.size()) >= together * static_cast<double>(pool_.size())) {
+    groups_.push_back({std::move(all), std::move(known)});
+    return;
+  }
+  for (const std::size_t o : all) {
+    known = known_in(pool_, {o});
+    if (!known.empty()) groups_.push_back({{o}, known});
   }
 }
 
@@ -116,15 +150,16 @@ void Resampler::collect_rows() {
   const std::size_t length = block_;
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     const Signals& s = experiments_[e];
-    std::size_t free = 0, idle = 0;  // up to sample i: in a row not held out; since the last that counts
+    std::vector<std::size_t> counted;  // since the last row that is held out
     for (std::size_t i = s.exclude; i < s.samples(); ++i) {
-      free = s.held_out(i) ? 0 : free + 1;
-      idle = counts(s, i) ? 0 : idle + 1;
-      if (free >= length && idle < length) starts_.push_back({e, i + 1 - length});
+      if (s.held_out(i)) counted.clear();
+      if (!counts(s, i)) continue;
+      counted.push_back(i);
+      if (counted.size() >= length) starts_.push_back({e, counted[counted.size() - length]});
     }
   }
   if (starts_.empty())
-    throw RunError("bootstrap: no experiment has " + std::to_string(block_) + " samples in a row of which none is held out and any counts");
+    throw RunError("bootstrap: no experiment has " + std::to_string(block_) + " samples that count without one between that is held out");
 }
 
 std::vector<Signals> Resampler::draw(std::mt19937_64& random) const {
@@ -134,23 +169,37 @@ std::vector<Signals> Resampler::draw(std::mt19937_64& random) const {
 std::vector<Signals> Resampler::draw_residuals(std::mt19937_64& random) const {
   std::vector<Signals> out = experiments_;
   std::uniform_int_distribution<std::size_t> place(0, pool_.size() - 1);
-  int left = 0;
-  std::size_t at = 0;
   for (std::size_t e = 0; e < out.size(); ++e) {
-    left = 0;  // blocks do not run on from one experiment into the next
+    int left = 0;  // blocks do not run on from one experiment into the next
+    std::vector<std::size_t> at(groups_.size(), 0);
     for (std::size_t i = 0; i < out[e].samples(); ++i) {
+      if (!measured(out[e], i)) continue;
       if (left-- == 0) {
-        at = place(random);
+        const std::size_t start = place(random);
+        for (std::size_t g = 0; g < at.size(); ++g) at[g] = groups_[g].first_from(start);
         left = block_ - 1;
       }
-      for (std::size_t o = 0; o < out[e].measured.size(); ++o) {
-        double& value = out[e].measured[o].values[i];
-        if (std::isfinite(value) && !out[e].held_out(i)) value = predicted_[e][o][i] + pool_[at][o];
-      }
-      at = (at + 1) % pool_.size();
+      for (std::size_t g = 0; g < at.size(); ++g) at[g] = draw_group(groups_[g], at[g], {e, i}, out[e]);
     }
   }
   return out;
+}
+
+std::size_t Resampler::draw_group(const Group& group, std::size_t at, const Place& place, Signals& out) const {
+  const auto& residuals = pool_[group.known[at]];
+  bool drawn = false;
+  for (const std::size_t o : group.channels) {
+    double& value = out.measured[o].values[place.sample];
+    if (!std::isfinite(value)) continue;
+    value = predicted_[place.experiment][o][place.sample] + residuals[o];
+    drawn = true;
+  }
+  return drawn ? (at + 1) % group.known.size() : at;
+}
+
+std::size_t Resampler::Group::first_from(std::size_t sample) const {
+  const auto found = std::lower_bound(known.begin(), known.end(), sample);
+  return found == known.end() ? 0 : found - known.begin();
 }
 
 Signals Resampler::part(const Signals& whole, std::size_t first, std::size_t last) const {
@@ -178,7 +227,7 @@ std::vector<Signals> Resampler::draw_rows(std::mt19937_64& random) const {
     const auto [experiment, first] = starts_[place(random)];
     const Signals& whole = experiments_[experiment];
     std::size_t last = first, drawn = 0;
-    for (; last < first + length && drawn < wanted; ++last) drawn += counts(whole, last) ? 1 : 0;
+    for (; drawn < wanted; ++last) drawn += counts(whole, last) ? 1 : 0;
     left -= drawn;
     out.push_back(part(whole, first, last));
     out.back().name += " block " + std::to_string(out.size());

@@ -30,12 +30,13 @@ struct BlockLength {
 
 /// Replicas of experiments that keep the residuals' memory, by blocks of consecutive samples [K].
 ///
-/// Residuals: of the counted samples (not excluded, not held out, every channel known), centred, brought up to the fit's noise sigma (a
-/// fit takes part of the noise), drawn in blocks over all channels at once, so that correlation between channels stays. Blocks wrap around
-/// the end [DH]. Samples that are missing stay missing; held-out ones stay as they are.
-/// Rows: blocks without a held-out sample, until they have as many counted samples as the experiments; the last ones are shortened for
-/// that (two share what one and a part would leave). A stencil reaches over a block's ends, so each brings up to `kReach` further samples
-/// at either end, which are not counted.
+/// A sample counts where any channel is measured that is neither excluded nor held out; rows without a measurement are in no block's
+/// length. Residuals: of the counted samples, centred, brought up to the fit's noise sigma (a fit takes part of the noise), drawn in blocks
+/// over all channels at once, so that correlation between channels stays. Where channels are measured at different samples, each takes its
+/// own residuals one after the other from the time on at which the block starts. Blocks wrap around the end [DH]. Samples that are missing
+/// stay missing; held-out ones stay as they are. Rows: blocks without a held-out sample, until they have as many counted samples as the
+/// experiments; the last ones are shortened for that (two share what one and a part would leave). A stencil reaches over a block's ends, so
+/// each brings up to `kReach` further samples at either end, which are not counted.
 ///
 /// Block length, unless given: five times the lag up to which the residuals' correlation stands out (correlation_length()), at least
 /// n^(1/3); for rows 50 samples more. At most an eighth of the samples, given or not: note() says so.
@@ -57,8 +58,19 @@ class Resampler {
   void collect_residuals(const Fit& fit);
   void collect_equations(const EquationResiduals& equations);
   void collect_rows();
+  void group_channels(std::size_t channels);
   [[nodiscard]] std::vector<Signals> draw_residuals(std::mt19937_64& random) const;
   [[nodiscard]] std::vector<Signals> draw_rows(std::mt19937_64& random) const;
+  struct Place {
+    std::size_t experiment, sample;
+  };
+  /// Channels whose residuals are drawn together, in the order of the samples of the pool at which they are known.
+  struct Group {
+    std::vector<std::size_t> channels, known;
+    [[nodiscard]] std::size_t first_from(std::size_t sample) const;
+  };
+  /// Draws residual `at` of the group where its channels are measured; returns the one that is next.
+  [[nodiscard]] std::size_t draw_group(const Group& group, std::size_t at, const Place& place, Signals& out) const;
   [[nodiscard]] Signals part(const Signals& whole, std::size_t first, std::size_t last) const;
 
   Resampled what_;
@@ -66,11 +78,9 @@ class Resampler {
   int block_ = 0;
   std::string note_;
   std::vector<std::vector<std::vector<double>>> predicted_;  ///< experiment, channel, sample
-  std::vector<std::vector<double>> pool_;                    ///< used sample over all experiments → residual per channel or equation
-  struct Start {
-    std::size_t experiment, sample;
-  };
-  std::vector<Start> starts_;  ///< of blocks of rows
+  std::vector<std::vector<double>> pool_;  ///< used sample over all experiments → residual per channel (NaN: not measured) or equation
+  std::vector<Group> groups_;
+  std::vector<Place> starts_;  ///< of blocks of rows
   std::size_t counted_ = 0;
 };
 

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "misfit/compare/motion_statistics.h"
 #include "misfit/compare/noisy_run.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/inference/states.h"
+#include "misfit/math/whiteness.h"
 #include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
@@ -115,10 +117,39 @@ std::vector<double> smoothed_start(const FilterEstimate& estimate, const FilterD
   return out;
 }
 
+/// The rows at which a measured path is known, and their times: those of its sensor, whatever else is measured between. All where it is
+/// known nowhere.
+struct OwnRows {
+  std::vector<std::size_t> rows;
+  std::vector<double> t;
+};
+
+OwnRows own_rows_of(const MotionPath& measured, const std::vector<double>& t) {
+  OwnRows out;
+  for (std::size_t i = 0; i < measured.values.size(); ++i) {
+    if (!std::isfinite(measured.values[i])) continue;
+    out.rows.push_back(i);
+    out.t.push_back(t[i]);
+  }
+  if (!out.rows.empty()) return out;
+  out.rows.resize(t.size());
+  std::iota(out.rows.begin(), out.rows.end(), std::size_t{0});
+  out.t = t;
+  return out;
+}
+
+/// A measured or simulated path at those rows, on an even grid: a lag of one sample is the usual step of its sensor.
+MotionPath at_own_rows(const MotionPath& path, const OwnRows& own) {
+  std::vector<double> values;
+  for (const std::size_t i : own.rows) values.push_back(path.values[i]);
+  return {path.name, path.unit, on_even_grid(own.t, values), path.spread_only};
+}
+
 struct Experiment {
   Signals measured;
   std::vector<double> start;
-  std::vector<MotionPath> paths;
+  std::vector<OwnRows> own;       ///< per path
+  std::vector<MotionPath> paths;  ///< at these rows
   std::vector<MotionScales> scales;
   std::vector<std::vector<MotionNumbers>> simulated;  ///< run → path; empty: failed
 };
@@ -127,8 +158,11 @@ Experiment experiment_of(const FilterWork& work, const FilterData& data) {
   Experiment e;
   e.measured = as_filtered(data);
   e.start = smoothed_start(*work.estimate, data);
-  e.paths = paths_of(work.estimate->model, e.measured);
-  for (const auto& path : e.paths) e.scales.push_back(scales_of(path, usual_step(e.measured.t)));
+  for (const MotionPath& path : paths_of(work.estimate->model, e.measured)) {
+    const OwnRows& own = e.own.emplace_back(own_rows_of(path, e.measured.t));
+    const MotionPath& there = e.paths.emplace_back(at_own_rows(path, own));
+    e.scales.push_back(scales_of(there, usual_step(own.t)));
+  }
   e.simulated.resize(runs);
   return e;
 }
@@ -139,7 +173,7 @@ std::vector<MotionNumbers> simulated_numbers(const FilterWork& work, const Stoch
   const std::optional<Signals> made = noisy_run(model, e.measured, e.start, seed);
   if (!made) return out;
   const std::vector<MotionPath> paths = paths_of(work.estimate->model, *made);
-  for (std::size_t p = 0; p < paths.size(); ++p) out.push_back(motion_numbers(paths[p], e.scales[p]));
+  for (std::size_t p = 0; p < paths.size(); ++p) out.push_back(motion_numbers(at_own_rows(paths[p], e.own[p]), e.scales[p]));
   return out;
 }
 

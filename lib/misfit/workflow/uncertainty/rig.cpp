@@ -22,7 +22,11 @@ bool is_camera(const std::string& name) {
 
 bool of_sweep(const std::string& name) { return name == "l_p" || name == "R1" || name == "R2" || name == "R3"; }
 
-bool any_track(const Study& study) { return std::any_of(study.experiments.begin(), study.experiments.end(), has_track); }
+/// Some experiment goes from a track through the camera: a film that the outputs read themselves does not.
+bool any_attitude(const Session& session) {
+  const auto& experiments = session.study.experiments;
+  return std::any_of(experiments.begin(), experiments.end(), [&](const ExperimentStudy& e) { return has_attitude(session, e); });
+}
 
 /// Sigmas in one of the numbers of the study.
 double divisor_of(const std::string& distribution) {
@@ -49,13 +53,20 @@ bool is_free(const Model& model, const std::string& name) {
   return i >= 0 && model.parameters[i].free;
 }
 
+void require_held(const Source& where, const Model& model, const std::string& name) {
+  if (!is_free(model, name)) return;
+  throw InputError(where, "'" + shown(name) +
+                              "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or leave it out "
+                              "here)");
+}
+
 }  // namespace
 
 Rig::Rig(Session& session, const Model& model) {
   const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   list_known(session, model);
   for (const PerturbStudy& request : uncertainty.perturb) add(request, model);
-  if (uncertainty.calibrated_camera) add_calibration(session);
+  if (uncertainty.calibrated_camera) add_calibration(session, model);
   if (perturbations_.names().empty())
     throw InputError(uncertainty.where, "nothing is perturbed: perturb = { R = \"0.1524 m\", … } says what, and how far");
   note_held_camera(model);
@@ -66,6 +77,8 @@ Rig::Rig(Session& session, const Model& model) {
     sweep_ = read_sweep(sweep_stage(session));
     calibrate_.model = nominal_.calibration->model;
     calibrate_.candidates.clear();
+    calibrate_.test_others = false;
+    calibrate_.force = session.study.camera.free;
     for (const CameraTest& test : nominal_.calibration->tests) {
       if (test.selected) calibrate_.force.push_back(test.name);
     }
@@ -89,7 +102,7 @@ void Rig::list_known(Session& session, const Model& model) {
     if (p.curve < 0) known_[p.name] = {p.unit, p.value};
     if (p.curve < 0) nominal_.constants[p.name] = p.value;
   }
-  if (!any_track(session.study)) return;
+  if (!any_attitude(session)) return;
   nominal_.calibration = calibrate_stage(session);
   for (const RigEntry& entry : rig_entries()) {
     const bool used = !of_sweep(entry.name) || session.study.uncertainty->recalibrate;
@@ -106,11 +119,7 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
   const Source& where = request.number.where;
   if (of_sweep(request.name) && !known_.contains(request.name))
     throw InputError(where, request.name + " acts through the calibration alone: recalibrate = true calibrates again in every run");
-  if (is_free(model, request.name)) {
-    throw InputError(where, "'" + request.name +
-                                "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or "
-                                "leave it out here)");
-  }
+  require_held(where, model, request.name);
   const auto known = known_.find(request.name);
   if (known == known_.end()) {
     std::vector<std::string> valid;
@@ -127,13 +136,14 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
   described_.push_back({request.name, unit, value, sigma, distribution_text(request, unit), ""});
 }
 
-void Rig::add_calibration(const Session& session) {
+void Rig::add_calibration(const Session& session, const Model& model) {
   const Source& where = session.study.uncertainty->where_camera;
   if (!nominal_.calibration || nominal_.calibration->names.empty())
     throw InputError(where, "camera = \"calibration\" needs a calibrated camera, or one given with sigmas, and a track");
   const Calibration& calibration = *nominal_.calibration;
   CorrelatedPerturbation group{"calibration", calibration.names, {}, calibration.covariance};
   for (const std::string& name : calibration.names) {
+    require_held(where, model, name);
     const auto& single = perturbations_.single;
     if (std::any_of(single.begin(), single.end(), [&](const Perturbation& p) { return p.name == name; }))
       throw InputError(where, "'" + shown(name) + "' is in perturb as well: give it one of the two");

@@ -44,7 +44,7 @@ class Rig {
   };
   void list_known(Session& session, const Model& model);
   void add(const PerturbStudy& request, const Model& model);
-  void add_calibration(const Session& session);
+  void add_calibration(const Session& session, const Model& model);
   void note_held_camera(const Model& model);
   void calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedRig& rig) const;
   void set(PerturbedRig& rig, const std::string& name, double error) const;
