@@ -286,6 +286,25 @@ def nothing_is_cut_off(page, where):
     page.wait(lambda: page.js(cut) == [], f"tables and texts as wide as their place: {where}", 20)
 
 
+def typed_text_is_kept(page):
+    """While the study of a rung is looked at, which can only be read."""
+    choose = "const m = document.querySelector('#model'); m.value = arguments[0]; m.dispatchEvent(new Event('change'))"
+    area = lambda: page.one("#view textarea").get_attribute("value")
+    page.js(choose, 0)
+    page.view("study")
+    page.wait(lambda: page.one("#save"), "the study's own text")
+    page.js("const a = document.querySelector('#view textarea'); a.value += '# mine\\n'; a.dispatchEvent(new Event('input'))")
+    page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked")
+    page.js(choose, 1)
+    page.wait(lambda: "the study of a rung" in page.text("#view") and "# mine" not in area(), "that of the rung")
+    assert page.text("#check") == "Nothing is wrong with it.", page.text("#check")
+    page.js(choose, 0)
+    page.wait(lambda: area().endswith("# mine\n") and "not saved yet" in page.text("#check"), "what was typed")
+    page.js("[...document.querySelectorAll('#view .buttons button')].find((b) => b.textContent === 'Undo all').click()")
+    page.wait(lambda: "# mine" not in area(), "undone")
+    page.js(choose, 1)
+
+
 def find_and_add():
     """Run, find where it fails, add the first candidate, see the error fall, reload."""
     server = Server()
@@ -333,6 +352,7 @@ def find_and_add():
     remove_asks_first(page)
     option = page.one(f"#effect option[value={first}]")
     assert not option.is_enabled() and "already in the model" in option.get_attribute("textContent"), "it cannot be added again"
+    typed_text_is_kept(page)
     page.view("curves")
     page.wait(lambda: "model 0, " in page.text("#view"), "the curves as they were before")
     page.view("commands")
@@ -472,9 +492,14 @@ def mend():
     page.js("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))", area, page.js("return arguments[0].value", area).replace(
         "start = 5", "starts = 5").replace("# a line\n", ""))
     page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked while typed")
+    page.js("""document.querySelector('#save').click();  // and typed on before the answer
+        arguments[0].value += '# more\\n'; arguments[0].dispatchEvent(new Event('input'))""", area)
+    page.wait(lambda: read(STUDY) == good, "saved")
+    page.wait(lambda: "not saved yet" in page.text("#check"), "what was typed since is not")
+    assert area.get_attribute("value") == good + "# more\n"
     page.click("#save")
     page.wait(lambda: "Saved" in page.text("#check"), "saved")
-    assert read(STUDY) == good
+    assert read(STUDY) == good + "# more\n"
     page.wait(lambda: page.one("#run").is_enabled(), "it can be run")
     page.end()
     server.end()

@@ -41,7 +41,7 @@ async function look() {
     const grown = here.models !== undefined && state.models.length > here.models;
     version = state.version;
     here.models = state.models.length;
-    if (grown || here.model >= state.models.length) here.model = state.models.length - 1;
+    if ((grown && !inHand()) || here.model >= state.models.length) here.model = state.models.length - 1;
     showHead();
     await showAll();
   }
@@ -767,7 +767,8 @@ async function showAll() {
       here.where = where;
       await showMotion(motion);
       mark([], '', true);
-      here.late = inHand();
+      here.late = inHand() && !here.chosen;
+      here.chosen = false;
       if (!here.late) await showView();
     }
   } finally {
@@ -778,6 +779,7 @@ async function showAll() {
 function choose(model) {
   for (const question of at('view').querySelectorAll('.asking')) question.remove(); // it was about another one
   here.model = model;
+  here.chosen = true; // what is typed in the study is kept by the editor
   at('model').value = model;
   showAll().catch(say);
 }
