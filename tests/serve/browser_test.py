@@ -412,8 +412,27 @@ def report_without_server(page, verdict):
     assert page.one("#page").is_displayed() and not page.one("body > main").is_displayed()
 
 
+def marks_do_not_go_with_another_recording(page):
+    """Nor does a zoom, nor a mark that is begun."""
+    choose = "const e = document.querySelector('#experiment'); e.value = arguments[0]; e.dispatchEvent(new Event('change'))"
+    plot = page.one("#motion .plot")
+    plot.send_keys(Keys.ARROW_RIGHT, "+", "m")
+    page.wait(lambda: page.js("return document.querySelector('#time').dataset.window") != "", "a zoom")
+    page.js(choose, "again")
+    page.wait(lambda: page.js("return document.querySelector('#experiment').value") == "again", "another recording")
+    assert not page.one("#holdout").is_displayed()
+    assert page.text("#marked") == "" and page.js("return document.querySelector('#time').dataset.window") == ""
+    page.wait(lambda: page.one("#motion .plot").send_keys(Keys.ARROW_RIGHT, "m") is None, "its motion")
+    page.wait(lambda: "m again where it ends" in page.text("#marked"), "its own mark is begun, not ended")
+    page.js(choose, "steps")
+    page.wait(lambda: page.text("#marked") == "", "the first one again")
+
+
 def settings():
     """A parameter is held and another part held out; both are lines of the study and commands of session.sh."""
+    text = read(STUDY)
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(text.replace("[effects]", '[[experiment]]\nname = "again"\ndata = "d.csv"\n[effects]'))
     server = Server()
     page = Page(server.address)
     page.click("#run")
@@ -432,11 +451,19 @@ def settings():
     page.js("arguments[0].scrollIntoView({block: 'center'})", over)
     ActionChains(page.driver).move_to_element(over).key_down(Keys.SHIFT).click_and_hold().move_by_offset(60, 0).release().key_up(Keys.SHIFT).perform()
     page.wait(lambda: page.one("#holdout").is_displayed(), "a marked time can be held out")
+    marks_do_not_go_with_another_recording(page)
+    over = page.one("#motion .u-over")
+    ActionChains(page.driver).move_to_element(over).key_down(Keys.SHIFT).click_and_hold().move_by_offset(60, 0).release().key_up(Keys.SHIFT).perform()
     page.click("#holdout")
     page.job("done", 3)
     assert re.search(r"validation = \[[\d.]+, [\d.]+\]", read(STUDY)), read(STUDY)
     page.click("#run")
     page.job("done", 4)
+    assert page.js("return document.querySelector('#method').value") == "filter_error"
+    page.js("const m = document.querySelector('#method'); m.value = 'output_error'; m.dispatchEvent(new Event('change'))")
+    page.click("#fit")
+    page.job("done", 5)
+    page.wait(lambda: page.js("return document.querySelector('#method').value") == "output_error", "a chosen method stays chosen")
     page.view("commands")
     page.wait(lambda: f"misfit set {STUDY} 'parameters.k.free=false'" in page.text("#view pre"), "session.sh")
     page.end()

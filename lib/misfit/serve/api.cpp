@@ -12,6 +12,8 @@
 #include "misfit/core/enum_name.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
 #include "misfit/data/study_reader.h"
 #include "misfit/page/json_text.h"
 #include "misfit/page/views.h"
@@ -28,7 +30,7 @@ using page::json_number;
 using page::json_string;
 using page::Place;
 
-constexpr std::size_t many = 10'000;  // methods, experiments or quantities: more than any study has
+constexpr std::size_t many = 10'000;  // experiments, quantities or candidates: more than any study has
 
 Answer failure(int status, const std::string& why) { return {status, fmt::format(R"({{"error":{}}})", json_string(why))}; }
 
@@ -185,8 +187,10 @@ std::string Api::frame(const Ask& ask) {
 Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/state") return {200, state()};
   if (ask.path == "/api/motion") {
-    const auto method = ask.parameters.contains("method") ? std::optional(number(ask, "method", many)) : std::nullopt;
-    return {200, page::motion_view(page::fits_of(place(ask)), method)};
+    const auto method = ask.parameters.find("method");
+    if (method != ask.parameters.end() && find_estimator(method->second) == nullptr)
+      throw InputError("method: one of " + join_words(estimator_names()) + " is expected");
+    return {200, page::motion_view(page::fits_of(place(ask)), method == ask.parameters.end() ? "" : method->second)};
   }
   if (ask.path == "/api/where") return {200, where(ask)};
   if (ask.path == "/api/samples") return {200, samples(ask)};

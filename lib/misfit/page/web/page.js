@@ -11,7 +11,7 @@ const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
-const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false, late: false };
+const here = { state: null, model: 0, tab: 'where', method: null, name: undefined, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false, late: false, chosen: false };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
@@ -253,22 +253,28 @@ async function start(key, verb, more = {}) {
 
 // ---- over time
 
-/** Of the last method until another one is chosen. */
+/** By the method that was chosen, by its name; of the last one until then, and where the model has none of that name. */
 const askForMotion = () => get('motion', { model: here.model, ...(here.method === null ? {} : { method: here.method }) });
 
 async function showMotion(motion = null) {
   motion = here.motion = motion ?? await askForMotion();
-  here.method = motion.method;
   at('methods').hidden = motion.methods.length === 0;
-  at('method').replaceChildren(...motion.methods.map((name, k) => element('option', { value: k }, name)));
-  at('method').value = here.method;
+  at('method').replaceChildren(...motion.methods.map((name) => element('option', { value: name }, name)));
+  at('method').value = motion.methods[motion.method];
   const names = [...new Set([...motion.channels.map((c) => c.experiment), ...(here.where?.force ?? []).map((f) => f.experiment), ...here.state.films])];
-  if (here.experiment >= names.length) here.experiment = 0;
-  here.name = names[here.experiment];
+  chooseExperiment(names.includes(here.name) ? here.name : names[0]);
   at('experiments').hidden = names.length < 2;
-  at('experiment').replaceChildren(...names.map((name, k) => element('option', { value: k }, name)));
-  at('experiment').value = here.experiment;
+  at('experiment').replaceChildren(...names.map((name) => element('option', { value: name }, name)));
+  at('experiment').value = here.name;
   drawTime();
+}
+
+/** Marks and zoom are of one recording: they do not go with the choice of another one. */
+function chooseExperiment(name) {
+  if (name === here.name) return;
+  here.name = name;
+  time.zoom(null);
+  unmark();
 }
 
 function drawTime() {
@@ -355,7 +361,7 @@ class Film {
     if (predicted) cross.setAttribute('d', `M${predicted[0] - size} ${predicted[1]}h${2 * size}M${predicted[0]} ${predicted[1] - size}v${2 * size}`);
     const said = [`Frame at ${shown(frame.t, 5)} s`];
     if (measured) said.push('yellow: measured');
-    if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.method]}`);
+    if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.motion.method]}`);
     at('frame-words').textContent = said.join(' · ');
   }
   /** [px] null: there is none at the frame's time. */
@@ -376,7 +382,10 @@ function valueAt(figure, kind, t) {
 }
 
 function mark(intervals, text, fixed) {
-  if (fixed) Object.assign(here, { fixed: intervals, marked: text });
+  if (fixed) {
+    Object.assign(here, { fixed: intervals, marked: text });
+    time.begun = undefined;
+  }
   const shownNow = intervals.length > 0 || fixed ? intervals : here.fixed;
   time.setMarks(shownNow);
   at('marked').textContent = at('marked').title = intervals.length > 0 ? text : here.marked;
@@ -814,8 +823,8 @@ function begin() {
   at('add').addEventListener('click', () => start('add', 'add', { effect: at('effect').value }));
   at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
   at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
-  at('method').addEventListener('change', (event) => { here.method = Number(event.target.value); showMotion().catch(say); });
-  at('experiment').addEventListener('change', (event) => { here.experiment = Number(event.target.value); showMotion().then(showView).catch(say); });
+  at('method').addEventListener('change', (event) => { here.method = event.target.value; showMotion().catch(say); });
+  at('experiment').addEventListener('change', (event) => { chooseExperiment(event.target.value); showMotion().then(showView).catch(say); });
   at('whole').addEventListener('click', () => time.zoom(null));
   at('unmark').addEventListener('click', unmark);
   at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
