@@ -11,6 +11,9 @@
 #include "misfit/core/units.h"
 #include "misfit/model/provisional.h"
 #include "misfit/page/json_text.h"
+#include "misfit/page/read_if.h"
+#include "misfit/workflow/estimate/estimate.h"
+#include "misfit/workflow/session/study_change.h"
 
 namespace misfit::serve {
 namespace {
@@ -63,7 +66,11 @@ Settable settable_of(const Session& session) {
     out.parameters.push_back({c.name, c.unit, model.parameters[c.first].free});
     out.curves.push_back({c.name, roughness_unit(c), c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
   }
-  for (const ExperimentStudy& experiment : session.study.experiments) out.experiments.push_back(experiment.name);
+  const std::vector<ExperimentStudy>& all = session.study.experiments;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool holds_a_file_out = k + 1 < all.size() && is_held_out_file(all, k + 1);
+    if (!holds_a_file_out && !is_held_out_file(all, k)) out.experiments.push_back(all[k].name);
+  }
   return out;
 }
 
