@@ -150,7 +150,7 @@ std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std
   if (experiment >= diagnosis.missing.size()) throw InputError("there is no such experiment");
   const MissingForce& missing = diagnosis.missing[experiment];
   if (quantity >= missing.quantities.size()) throw InputError("there is no such quantity");
-  return fmt::format(R"({{"t":{},"values":{},"figure":{}}})", json_numbers(missing.t, 9),
+  return fmt::format(R"({{"t":{},"values":{},"figure":{}}})", json_places(missing.t),
                      json_numbers(display_levels(missing.values[quantity], missing.quantity_units[quantity])),
                      json_of(report::missing_force_by_figure(missing, missing.quantities[quantity])));
 }

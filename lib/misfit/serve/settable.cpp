@@ -43,7 +43,7 @@ void expect_end(std::string_view text) {
 std::string interval_of(std::string_view value) {
   const double from = number_of(value), to = number_of(value);
   expect_end(value);
-  return fmt::format("[{:.6g}, {:.6g}]", from, to);
+  return fmt::format("[{}, {}]", from, to);
 }
 
 std::string roughness_of(std::string_view value) {

@@ -406,6 +406,12 @@ time.onzoom = (window) => { at('time').dataset.window = window === null ? '' : w
 time.onbegun = (t) => { at('marked').textContent = `Marked from ${shown(t, 5)} s: m again where it ends`; };
 time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${shown(from, 5)} s to ${shown(to, 5)} s`, true);
 
+/** Two times, to a millionth of what lies between them: a mouse knows no more. */
+function written([from, to]) {
+  const places = Math.min(Math.max(Math.ceil(6 - Math.log10(to - from)), 0), 15);
+  return [from, to].map((t) => String(Number(t.toFixed(places)))).join(' ');
+}
+
 /** The samples of the marked times, in the view of force against a quantity. */
 function markPoints() {
   const samples = here.samples;
@@ -827,7 +833,7 @@ function begin() {
   at('experiment').addEventListener('change', (event) => { chooseExperiment(event.target.value); showMotion().then(showView).catch(say); });
   at('whole').addEventListener('click', () => time.zoom(null));
   at('unmark').addEventListener('click', unmark);
-  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
+  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: written(here.fixed[0]) }));
   addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
   addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
   onScreenChange(() => { drawTime(); showView().catch(say); });
