@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
+#include "misfit/core/config.h"
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
@@ -155,17 +157,12 @@ std::string held_in_words(const std::map<std::string, Estimate>& held) {
 }
 
 StageInputs inputs_of_ladder(const Session& session) {
-  std::vector<fs::path> files;
-  for (const auto& experiment : session.study.experiments) {
-    for (const auto& file : {experiment.track, experiment.video, experiment.data}) {
-      if (file) files.push_back(*file);
-    }
-  }
-  for (const auto& file : {session.study.camera.sweep, session.study.camera.sweep_images}) {
-    if (file) files.push_back(*file);
-  }
-  if (session.study.system_file) files.push_back(*session.study.system_file);
-  auto out = session.inputs(session.study.text, files);
+  Study study = session.study;
+  study.reference.clear();  // no rung depends on them
+  const std::vector<fs::path> named = files_of_study(study);
+  std::set<fs::path> files(named.begin(), named.end());  // many pictures of a sweep are in one video
+  files.erase(study.file);
+  auto out = session.inputs(config::content_of(study.text), {files.begin(), files.end()});
   out.erase("program");  // a new build refits the rungs; it does not start a new ladder
   return out;
 }

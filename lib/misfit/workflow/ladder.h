@@ -14,7 +14,8 @@ namespace misfit {
 /// out/ beside it.
 class ModelLadder {
  public:
-  /// Opens the study and its ladder. A ladder of a study or data that have changed since is replaced by a new one; a note says so.
+  /// Opens the study and its ladder. A ladder of a study (comments and references aside) or of files of it that have changed
+  /// since is replaced by a new one; a note says so.
   ModelLadder(const SessionOptions& options, const Registry& registry);
 
   [[nodiscard]] Session& root() { return root_; }
