@@ -225,8 +225,15 @@ Session& ModelLadder::last() {
                      root_.folder.file(ladder_name).string() + " to start a new one");
     root_.note(fmt::format("continuing from rung {} of the ladder, {}", rung.id, study.parent_path().lexically_normal().string()));
     last_ = std::make_unique<Session>(options_for(options_, study), registry_);
+    if (limits_fits_) last_->usual_limit = usual_limit(options_, seconds_of_fit(ladder_.rungs[ladder_.rungs.size() - 2]));
   }
   return *last_;
+}
+
+double ModelLadder::seconds_of_fit(const Rung& rung) const {
+  const fs::path results = rung.parent < 0 ? root_.folder.path() : root_.folder.file(rung.study).parent_path() / "out";
+  const fs::path fit = results / "fit" / method;
+  return fs::exists(fit / "fit.json") ? read_fit(fit).seconds : 0.0;
 }
 
 const Rung& ModelLadder::last_rung() {

@@ -45,6 +45,8 @@ class ModelLadder {
 
  private:
   [[nodiscard]] std::string relative_study(const Session& session) const;
+  /// [s] That its fit took; 0: it is not there.
+  [[nodiscard]] double seconds_of_fit(const Rung& rung) const;
   /// The study of a rung that is to be added.
   struct NewStudy {
     int id = 0;
