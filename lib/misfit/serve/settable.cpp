@@ -57,7 +57,11 @@ std::string roughness_of(std::string_view value) {
 }  // namespace
 
 Settable settable_of(const Session& session) {
-  const Model model = provisional_model(session.model.request, session.registry);
+  ModelRequest request = session.model.request;
+  const std::filesystem::path camera = session.folder.file("camera.json");
+  if (const auto calibration = page::read_if(camera, [&] { return read_calibration(camera); }))
+    add_camera(*calibration, session.registry, request);  // what it has calibrated is estimated, too
+  const Model model = provisional_model(request, session.registry);
   Settable out;
   for (const misfit::Parameter& p : model.parameters) {
     if (p.curve < 0) out.parameters.push_back({p.name, p.unit, p.free});

@@ -653,10 +653,10 @@ function roughnessOf(paths, figures, parent) {
   const value = () => Math.exp(between(path.roughness.map(Math.log), mixed));
   function move() {
     const asFitted = slider.valueAsNumber === used();
-    for (const figure of figures) figure.overlay = [];
+    for (const figure of figures) figure.overlay = (figure.overlay ?? []).filter((s) => s.of !== slider); // other curves keep theirs
     for (const c of asFitted ? [] : path.curves) {
       const y = between(c.values, (a, b, share) => a.map((v, i) => mixed(v, b[i], share)));
-      figures[c.figure]?.overlay.push({ x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
+      figures[c.figure]?.overlay.push({ of: slider, x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
     }
     for (const figure of figures) figure.redraw();
     const support = between(path.support, mixed), freedom = path.freedom && `; ${path.freedom} effective degrees of freedom`;

@@ -24,6 +24,8 @@ struct Prepared {
 [[nodiscard]] bool predicts_pixels(const SystemSpec& spec);
 /// A system that predicts the image sees it through the study's camera: values and sigmas of the calibration, and its projection.
 void add_camera(Session& session, ModelRequest& request);
+/// The same with a calibration that is there already.
+void add_camera(const Calibration& calibration, const Registry& registry, ModelRequest& request);
 /// For the study's own system.
 [[nodiscard]] Prepared prepare(Session& session);
 /// For the regression form of sliding_bin; nullopt where the system has none. Names of effects it leaves out go to `left_out`.
