@@ -229,13 +229,13 @@ void Api::open_study(Known& known) const {
       name = session.study.name;
       question = session.study.question;
       results_.know_ladder(known_ladder(session).has_value());
-      known.outdated = outdated(session);
-      known.references = references(session);
-      known.settable = settable_of(session);
-      known.effects = effects();
       for (const ExperimentStudy& experiment : session.study.experiments) {
         if (experiment.video) known.films.emplace_back(experiment.name, *experiment.video);
       }
+      known.outdated = outdated(session, results_.places(), registry_);
+      known.references = references(session);
+      known.settable = settable_of(session);
+      known.effects = effects(known.outdated);
     } catch (const std::exception& error) {
       fault = TextFault{error.what(), 0};
     }
@@ -245,10 +245,15 @@ void Api::open_study(Known& known) const {
                   json_string(results_.study().string()), json_string(results_.folder().string()), json_of(fault));
 }
 
-std::vector<Addable> Api::effects() const {
+std::vector<Addable> Api::effects(std::vector<std::string>& faults) const {
   const Place last = results_.places().back();
   const SessionOptions options = last.id == 0 ? options_ : options_for(options_, last.study);
-  return addable_effects(Session(options, registry_, RunFolder::Access::read), page::discovery_of(last));
+  try {
+    return addable_effects(Session(options, registry_, RunFolder::Access::read), page::discovery_of(last));
+  } catch (const std::exception& error) {
+    faults.push_back(std::string("No effect can be added: ") + error.what());
+    return {};
+  }
 }
 
 std::shared_ptr<const Api::Known> Api::known() {
