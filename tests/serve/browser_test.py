@@ -156,6 +156,8 @@ def point_at_the_worst_place(page):
     assert len(marked) >= 4, seen
     assert page.js(series) == painted, "marks stand on a canvas of their own: 50 000 points are not drawn again for each step of the mouse"
     assert page.js("const c = document.querySelector('#motion .u-under canvas'); return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v > 0)")
+    ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click_and_hold().move_to_element(page.one("h1")).release().perform()
+    over.find_element(By.XPATH, "./ancestor::*[@class='plot']").send_keys("0")  # a drag that ended elsewhere was a zoom
     ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click().perform()
     page.wait(lambda: int(page.one("#time").get_attribute("data-marks")) > 0, "the marks")
     page.frames()

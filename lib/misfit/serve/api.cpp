@@ -284,10 +284,10 @@ Answer Api::study(const Place& place) const {
 }
 
 Answer Api::save(const std::string& text, const std::string& hash) {
+  const std::string whole = text.ends_with('\n') ? text : text + "\n";
+  const std::lock_guard lock(mutex_);  // no command begins meanwhile
   if (jobs_.report().state == JobState::running)
     return failure(409, "a command is at work: wait for its end, or stop it, before the study is changed");
-  const std::string whole = text.ends_with('\n') ? text : text + "\n";
-  const std::lock_guard lock(mutex_);
   if (const auto fault = save_text(results_.study(), whole, hash, registry_))
     return {422, fmt::format(R"({{"error":{},"faults":{}}})", json_string(fault->message),
                              json_of(faults_of(results_.study(), whole, registry_)))};

@@ -590,9 +590,10 @@ class AddedForces {
     });
   }
   async show(own) {
-    const mine = ++this.turn;
+    const mine = ++this.turn, { model, name } = here;
     const figure = own && missing() ? await get('added', { model: here.model, experiment: placeOfMissing(), candidate: own.candidate }).catch(() => null) : null;
-    if (mine === this.turn && here.tab === 'candidates') drawForce(figure ? { name: own.name, figure } : null);
+    const shown = model === here.model && name === here.name && here.tab === 'candidates' && own?.button.isConnected !== false;
+    if (mine === this.turn && shown) drawForce(figure ? { name: own.name, figure } : null);
   }
 }
 
