@@ -54,6 +54,15 @@ TEST(AFigureAsJson, TypesetsSymbolsAsTheReportDoes) {
   EXPECT_EQ(json::parse(json_words("plain")), "plain");
 }
 
+TEST(NumbersAsJson, TellTimesApartHoweverFarFromZero) {
+  EXPECT_EQ(json_places({0.0, 0.05, 1.0 / 3.0}), "[0,0.05,0.333333333]");
+  EXPECT_EQ(json_places({1764204705.25, 1764204705.27, nan, 1764204715.0}), "[1764204705.25,1764204705.27,null,1764204715]");
+  EXPECT_EQ(json_places({123456.789125, 123456.7895}), "[123456.789125,123456.7895]");
+  report::Figure figure = figure_with_text("x");
+  figure.x_range = {123456.78, 123456.79};
+  EXPECT_EQ(json::parse(json_of(figure))["xRange"], json::parse("[123456.78,123456.79]"));
+}
+
 TEST(NumbersAsJson, AreNullWhereTheyAreNotFinite) {
   EXPECT_EQ(json_numbers({1.5, nan, std::numeric_limits<double>::infinity(), -2e-9}), "[1.5,null,null,-2e-09]");
   EXPECT_EQ(json_number(nan), "null");

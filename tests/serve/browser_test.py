@@ -156,6 +156,8 @@ def point_at_the_worst_place(page):
     assert len(marked) >= 4, seen
     assert page.js(series) == painted, "marks stand on a canvas of their own: 50 000 points are not drawn again for each step of the mouse"
     assert page.js("const c = document.querySelector('#motion .u-under canvas'); return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v > 0)")
+    ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click_and_hold().move_to_element(page.one("h1")).release().perform()
+    over.find_element(By.XPATH, "./ancestor::*[@class='plot']").send_keys("0")  # a drag that ended elsewhere was a zoom
     ActionChains(page.driver).move_to_element_with_offset(over, 0, 0).click().perform()
     page.wait(lambda: int(page.one("#time").get_attribute("data-marks")) > 0, "the marks")
     page.frames()
@@ -199,7 +201,10 @@ def move_the_roughness(page):
     page.wait(lambda: "(log marginal likelihood)" in page.text(".slider output"), "what the likelihood says")
     page.wait(lambda: drawn() != before, "another curve")
     assert float(re.search(r"([\d.e+]+) times as fitted", page.text(".slider output"))[1]) > 1, "smooth: a larger roughness than fitted"
-    page.js("[...document.querySelectorAll('.slider button')].find((b) => b.textContent === 'As fitted').click()")
+    page.js("const [s] = [...document.querySelectorAll('.slider input')].slice(1); s.value = s.max; s.dispatchEvent(new Event('input'))")
+    page.frames()
+    assert drawn() != before, "another curve's slider leaves it"
+    page.js("for (const b of document.querySelectorAll('.slider button')) if (b.textContent === 'As fitted') b.click()")
     page.wait(lambda: drawn() == before, "the curve as fitted")
 
 
@@ -286,6 +291,25 @@ def nothing_is_cut_off(page, where):
     page.wait(lambda: page.js(cut) == [], f"tables and texts as wide as their place: {where}", 20)
 
 
+def typed_text_is_kept(page):
+    """While the study of a rung is looked at, which can only be read."""
+    choose = "const m = document.querySelector('#model'); m.value = arguments[0]; m.dispatchEvent(new Event('change'))"
+    area = lambda: page.one("#view textarea").get_attribute("value")
+    page.js(choose, 0)
+    page.view("study")
+    page.wait(lambda: page.one("#save"), "the study's own text")
+    page.js("const a = document.querySelector('#view textarea'); a.value += '# mine\\n'; a.dispatchEvent(new Event('input'))")
+    page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked")
+    page.js(choose, 1)
+    page.wait(lambda: "the study of a rung" in page.text("#view") and "# mine" not in area(), "that of the rung")
+    assert page.text("#check") == "Nothing is wrong with it.", page.text("#check")
+    page.js(choose, 0)
+    page.wait(lambda: area().endswith("# mine\n") and "not saved yet" in page.text("#check"), "what was typed")
+    page.js("[...document.querySelectorAll('#view .buttons button')].find((b) => b.textContent === 'Undo all').click()")
+    page.wait(lambda: "# mine" not in area(), "undone")
+    page.js(choose, 1)
+
+
 def find_and_add():
     """Run, find where it fails, add the first candidate, see the error fall, reload."""
     server = Server()
@@ -333,6 +357,7 @@ def find_and_add():
     remove_asks_first(page)
     option = page.one(f"#effect option[value={first}]")
     assert not option.is_enabled() and "already in the model" in option.get_attribute("textContent"), "it cannot be added again"
+    typed_text_is_kept(page)
     page.view("curves")
     page.wait(lambda: "model 0, " in page.text("#view"), "the curves as they were before")
     page.view("commands")
@@ -392,8 +417,27 @@ def report_without_server(page, verdict):
     assert page.one("#page").is_displayed() and not page.one("body > main").is_displayed()
 
 
+def marks_do_not_go_with_another_recording(page):
+    """Nor does a zoom, nor a mark that is begun."""
+    choose = "const e = document.querySelector('#experiment'); e.value = arguments[0]; e.dispatchEvent(new Event('change'))"
+    plot = page.one("#motion .plot")
+    plot.send_keys(Keys.ARROW_RIGHT, "+", "m")
+    page.wait(lambda: page.js("return document.querySelector('#time').dataset.window") != "", "a zoom")
+    page.js(choose, "again")
+    page.wait(lambda: page.js("return document.querySelector('#experiment').value") == "again", "another recording")
+    assert not page.one("#holdout").is_displayed()
+    assert page.text("#marked") == "" and page.js("return document.querySelector('#time').dataset.window") == ""
+    page.wait(lambda: page.one("#motion .plot").send_keys(Keys.ARROW_RIGHT, "m") is None, "its motion")
+    page.wait(lambda: "m again where it ends" in page.text("#marked"), "its own mark is begun, not ended")
+    page.js(choose, "steps")
+    page.wait(lambda: page.text("#marked") == "", "the first one again")
+
+
 def settings():
     """A parameter is held and another part held out; both are lines of the study and commands of session.sh."""
+    text = read(STUDY)
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(text.replace("[effects]", '[[experiment]]\nname = "again"\ndata = "d.csv"\n[effects]'))
     server = Server()
     page = Page(server.address)
     page.click("#run")
@@ -412,11 +456,19 @@ def settings():
     page.js("arguments[0].scrollIntoView({block: 'center'})", over)
     ActionChains(page.driver).move_to_element(over).key_down(Keys.SHIFT).click_and_hold().move_by_offset(60, 0).release().key_up(Keys.SHIFT).perform()
     page.wait(lambda: page.one("#holdout").is_displayed(), "a marked time can be held out")
+    marks_do_not_go_with_another_recording(page)
+    over = page.one("#motion .u-over")
+    ActionChains(page.driver).move_to_element(over).key_down(Keys.SHIFT).click_and_hold().move_by_offset(60, 0).release().key_up(Keys.SHIFT).perform()
     page.click("#holdout")
     page.job("done", 3)
     assert re.search(r"validation = \[[\d.]+, [\d.]+\]", read(STUDY)), read(STUDY)
     page.click("#run")
     page.job("done", 4)
+    assert page.js("return document.querySelector('#method').value") == "filter_error"
+    page.js("const m = document.querySelector('#method'); m.value = 'output_error'; m.dispatchEvent(new Event('change'))")
+    page.click("#fit")
+    page.job("done", 5)
+    page.wait(lambda: page.js("return document.querySelector('#method').value") == "output_error", "a chosen method stays chosen")
     page.view("commands")
     page.wait(lambda: f"misfit set {STUDY} 'parameters.k.free=false'" in page.text("#view pre"), "session.sh")
     page.end()
@@ -472,9 +524,14 @@ def mend():
     page.js("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))", area, page.js("return arguments[0].value", area).replace(
         "start = 5", "starts = 5").replace("# a line\n", ""))
     page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked while typed")
+    page.js("""document.querySelector('#save').click();  // and typed on before the answer
+        arguments[0].value += '# more\\n'; arguments[0].dispatchEvent(new Event('input'))""", area)
+    page.wait(lambda: read(STUDY) == good, "saved")
+    page.wait(lambda: "not saved yet" in page.text("#check"), "what was typed since is not")
+    assert area.get_attribute("value") == good + "# more\n"
     page.click("#save")
     page.wait(lambda: "Saved" in page.text("#check"), "saved")
-    assert read(STUDY) == good
+    assert read(STUDY) == good + "# more\n"
     page.wait(lambda: page.one("#run").is_enabled(), "it can be run")
     page.end()
     server.end()

@@ -115,6 +115,25 @@ TEST(CommandsOfThePage, AreNotWrittenThroughLinks) {
   EXPECT_EQ(content(study.path("real.toml")), shown["text"].get<std::string>());
 }
 
+/// Damaged, and missing.
+void expect_that_a_rung_is_watched(const PageServer& server, const fs::path& rung) {
+  const fs::path diagnosis = rung / "out/diagnosis.json", record = rung / "out/run.json";
+  const std::string good = content(diagnosis), good_record = content(record);
+  std::ofstream(diagnosis) << good << " ";
+  std::ofstream(record) << good_record << " ";
+  EXPECT_THAT(server.state()["outdated"].dump(), HasSubstr("the diagnosis of rung 1"));
+  std::ofstream(diagnosis) << good;
+  std::ofstream(record) << good_record;
+  EXPECT_TRUE(server.state()["outdated"].empty());
+  fs::rename(rung, rung.string() + "_away");
+  const json state = server.state();
+  EXPECT_EQ(state["study"]["fault"], nullptr) << "the study itself is well";
+  EXPECT_THAT(state["outdated"].dump(), HasSubstr("Rung 1 of the ladder cannot be read: "));
+  EXPECT_EQ(state["effects"], json::array());
+  fs::rename(rung.string() + "_away", rung);
+  EXPECT_TRUE(server.state()["outdated"].empty());
+}
+
 TEST(CommandsOfThePage, AddWhereTheListSaysAndRemoveWhatWasAdded) {
   const OscillatorStudy study;
   study.measure_twice();
@@ -134,6 +153,13 @@ TEST(CommandsOfThePage, AddWhereTheListSaysAndRemoveWhatWasAdded) {
   EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", (*several)["at"]}}).parsed()["command"], command);
   ASSERT_EQ(server.job()["state"], "done");
   ASSERT_EQ(server.state()["models"].size(), 2U);
+  const json motion = server.get("/api/motion?model=1&method=output_error").parsed();
+  EXPECT_EQ(motion["methods"], json::array({"filter_error"})) << "a rung is fitted by it alone";
+  EXPECT_FALSE(motion["channels"].empty());
+  study.write("study.toml", content(study.path("study.toml")) + "# a comment\n");
+  EXPECT_EQ(server.state()["models"].size(), 2U) << "a comment changes no model";
+  EXPECT_TRUE(server.state()["outdated"].empty());
+  expect_that_a_rung_is_watched(server, study.path("out/rungs/01_" + effect));
 
   for (const char* rung : {"0", "2", "1; ls", ""})
     EXPECT_EQ(server.post("/api/job", {{"verb", "remove"}, {"rung", rung}}).status, 400) << rung;
@@ -214,14 +240,46 @@ TEST(OpeningAPage, SaysWhatIsWrong) {
   EXPECT_EQ(run({"open", study.path("study.toml").string(), "--port", "70000"}).status, 2);
 }
 
+TEST(OpeningAPage, SeesThatAFileOfTheStudyHasChangedAndThatALimitOfTimeChangesNothing) {
+  const OscillatorStudy study;
+  ASSERT_EQ(run({"fit", study.path("study.toml").string(), "--time-limit", "600", "--quiet"}).status, 0);
+  const PageServer server({study.path("study.toml").string()});
+  const json before = server.state();
+  EXPECT_TRUE(before["outdated"].empty()) << before["outdated"];
+  study.write("d.csv", content(study.path("d.csv")) + "30.000,1.0,0.1\n");
+  const json after = server.state();
+  EXPECT_NE(after["version"], before["version"]);
+  EXPECT_THAT(after["outdated"].dump(), HasSubstr("the fit by output_error"));
+}
+
+TEST(OpeningAPage, HoldsAPartOutOnlyWhereNoFileIsHeldOut) {
+  const OscillatorStudy study;
+  study.write("e.csv", content(study.path("d.csv")));
+  study.write("study.toml", std::regex_replace(content(study.path("study.toml")), std::regex("validation = \"last 25 %\""),
+                                               "validation = \"e.csv\"\n[[experiment]]\nname = \"more\"\ndata = \"d.csv\""));
+  const PageServer server({study.path("study.toml").string()});
+  EXPECT_EQ(server.state()["settable"]["experiments"], json::array({"more"}));
+  const auto held_out = [&](const char* name, const char* value) {
+    return server.post("/api/job", {{"verb", "set"}, {"what", "validation"}, {"name", name}, {"value", value}});
+  };
+  EXPECT_EQ(held_out("steps validation", "1 2").status, 400);
+  EXPECT_THAT(held_out("more", "1764204705.25 1764204706").parsed()["command"].get<std::string>(),
+              HasSubstr("experiment.more.validation=[1764204705.25, 1764204706]"));
+}
+
 TEST(OpeningAPage, NamesWhatCanBeSetWithItsUnit) {
   const StudyCopy swivel("swivel_friction");
+  ASSERT_EQ(swivel.run("calibrate", {"--quiet"}).status, 0);
   const PageServer server({swivel.path("study.toml").string()});
   const json state = server.state();
   EXPECT_EQ(state["study"]["fault"], nullptr);
   ASSERT_EQ(state["settable"]["curves"].size(), 2U);
   EXPECT_EQ(state["settable"]["curves"][0]["unit"], json::parse(R"([["rad",0],["3",1]])")) << "of C_m, which has no unit, over alpha_T";
   EXPECT_EQ(state["settable"]["curves"][0]["roughness"], "auto");
+  const auto& parameters = state["settable"]["parameters"];
+  const auto camera = std::find_if(parameters.begin(), parameters.end(), [](const json& p) { return p["name"] == "h_c"; });
+  ASSERT_NE(camera, parameters.end());
+  EXPECT_EQ((*camera)["free"], true) << "as the calibration gives it";
 }
 
 TEST(OpeningAPage, DoesNoWork) {

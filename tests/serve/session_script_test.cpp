@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/core/temporary_folder.h"
 
 namespace misfit::serve {
@@ -20,6 +22,21 @@ TEST(TheScriptOfASession, HasCommandsAndTextsInTheirOrder) {
   EXPECT_THAT(script.text(), HasSubstr("set -e\n"));
   EXPECT_THAT(script.text(), HasSubstr("\nmisfit add 'my study' 'it'\\''s' --out o\n"
                                        "cat > 'my study/study.toml' <<'END_OF_STUDY_'\na = 'END_OF_STUDY'\nEND_OF_STUDY_\n"));
+}
+
+TEST(TheScriptOfASession, GoesToTheFolderInWhichEachCommandWasTyped) {
+  const TemporaryFolder folder, other;
+  const std::filesystem::path before = std::filesystem::current_path();
+  const SessionScript script(folder.path());
+  script.record("misfit fit s");
+  script.record("misfit run s");
+  std::filesystem::current_path(other.path());
+  const SessionScript next(folder.path());
+  next.record("misfit fit ../s");
+  next.record("misfit run ../s");
+  std::filesystem::current_path(before);
+  EXPECT_THAT(script.text(), EndsWith("set -e\ncd -- " + before.string() + "\nmisfit fit s\nmisfit run s\ncd -- " + other.path().string() +
+                                      "\nmisfit fit ../s\nmisfit run ../s\n"));
 }
 
 TEST(TheScriptOfASession, DoesNotDoAgainWhatWasStoppedOrRefusedAndGoesOnAfterAMethodThatDeclined) {

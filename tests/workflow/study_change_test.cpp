@@ -38,6 +38,19 @@ TEST_F(ChangedStudy, AnExperimentGoesByItsName) {
               ThrowsMessage<InputError>(HasSubstr("no experiment is called 'thesecond' — did you mean 'the=second'?")));
 }
 
+TEST_F(ChangedStudy, ARecordingThatAnotherExperimentHoldsOutHasNoKeysOfItsOwn) {
+  EXPECT_THAT([&] { (void)with("experiment.\"a validation\".validation=[0.5, 1]"); },
+              ThrowsMessage<InputError>(HasSubstr("'a validation' is the recording that 'a' holds out as a whole")));
+}
+
+TEST_F(ChangedStudy, ExperimentsGoByTheirNamesHoweverTheyAreWritten) {
+  const std::string rest = "[system]\nkind = \"x\"\n[effects]\n";
+  folder.write("study.toml", "[experiment]\nname = \"steps\"\ndata = \"a.csv\"\n" + rest);
+  EXPECT_THAT(with("experiment.steps.validation=[0.5, 1]"), HasSubstr("data = \"a.csv\"\nvalidation = [0.5, 1]\n[system]\n"));
+  folder.write("study.toml", "experiment = [{ data = \"a.csv\" }, { data = \"b.csv\" }]\n" + rest);
+  EXPECT_THAT(with("experiment.b.exclude=3"), HasSubstr("{ data = \"a.csv\" }, { data = \"b.csv\", exclude = 3 }]"));
+}
+
 TEST_F(ChangedStudy, AValueThatIsNoTomlIsAText) {
   EXPECT_THAT(with("experiment.a.validation=last 30 %"), HasSubstr("validation = \"last 30 %\"\n"));
   EXPECT_THAT(with("curves.C_m.roughness=auto"), HasSubstr("[effects]\n\n[curves]\nC_m.roughness = \"auto\"\n"));

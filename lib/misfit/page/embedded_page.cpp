@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <unordered_map>
 
 #include "misfit/core/files.h"
@@ -89,14 +90,23 @@ std::string study_of(const Place& place) {
                      json_string(place.study.filename().string()));
 }
 
+/// By which any model is fitted: one that is chosen stays chosen in a model that it has not fitted.
+std::set<std::string> methods_of(const std::vector<Place>& places) {
+  std::set<std::string> out;
+  for (const Place& place : places) {
+    for (const Fit& fit : fits_of(place)) out.insert(fit.method);
+  }
+  return out;
+}
+
 /// Motion by every method and the missing force.
 void add_first_views(const EmbeddedPage& page, std::size_t model, AllAnswers& out) {
   const std::string number = fmt::format("model={}", model);
   const bool needed = model + 1 == page.places.size();  // it is shown first
   out.push_back({"where?" + number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr), needed});
   const std::vector<Fit> fits = fits_of(page.places[model]);
-  out.push_back({"motion?" + number, motion_view(fits, std::nullopt), needed});
-  for (std::size_t method = 0; method < fits.size(); ++method)
+  out.push_back({"motion?" + number, motion_view(fits, ""), needed});
+  for (const std::string& method : methods_of(page.places))
     out.push_back({fmt::format("motion?{}&method={}", number, method), motion_view(fits, method), needed});
 }
 

@@ -21,7 +21,6 @@ using report::Panel;
 using report::Series;
 using report::Style;
 
-constexpr int digits_of_x = 9;
 constexpr std::array<const char*, 13> style_names = {"line", "dashed",    "dotted", "points", "markers", "error_bars", "x_bars",
                                                      "band", "pale_band", "steps",  "boxes",  "bars",    "cells"};
 
@@ -42,7 +41,7 @@ class SharedX {
   }
   [[nodiscard]] std::string text() const {
     std::vector<std::string> out;
-    for (const std::vector<double>* x : all_) out.push_back(json_numbers(*x, digits_of_x));
+    for (const std::vector<double>* x : all_) out.push_back(json_places(*x));
     return json_list(out);
   }
 
@@ -51,7 +50,7 @@ class SharedX {
 };
 
 std::string range(const std::optional<std::array<double, 2>>& range) {
-  return range ? json_numbers({range->front(), range->back()}) : "null";
+  return range ? fmt::format("[{},{}]", json_number(range->front()), json_number(range->back())) : "null";
 }
 
 std::string marks(const std::vector<report::Mark>& marks) {
@@ -144,6 +143,17 @@ std::string json_numbers(const std::vector<double>& values, int digits) {
   }
   out.push_back(']');
   return fmt::to_string(out);
+}
+
+std::string json_places(const std::vector<double>& x) {
+  constexpr int of_span = 9, most = 17;  // significant digits; 17 give a number as it is
+  double least = INFINITY, largest = -INFINITY;
+  for (const double value : x) {
+    if (std::isfinite(value)) least = std::min(least, value), largest = std::max(largest, value);
+  }
+  const double span = largest - least, size = std::max(std::abs(least), std::abs(largest));
+  const int more = span > 0.0 && size > span ? static_cast<int>(std::ceil(std::log10(size / span))) : 0;
+  return json_numbers(x, std::min(of_span + more, most));
 }
 
 std::string json_list(const std::vector<std::string>& items) { return fmt::format("[{}]", fmt::join(items, ",")); }

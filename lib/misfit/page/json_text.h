@@ -17,6 +17,8 @@ namespace misfit::page {
 [[nodiscard]] std::string json_number(double value);
 /// To `digits` significant digits.
 [[nodiscard]] std::string json_numbers(const std::vector<double>& values, int digits = 6);
+/// Values along an axis, such as times: to a 1e-9th of what they span, however far they are from zero (UNIX seconds).
+[[nodiscard]] std::string json_places(const std::vector<double>& x);
 /// [a,b,…] of texts that are JSON.
 [[nodiscard]] std::string json_list(const std::vector<std::string>& items);
 

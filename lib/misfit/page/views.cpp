@@ -122,18 +122,18 @@ void add_curve_below(int model, const std::vector<Fit>& fits, const std::pair<st
 
 }  // namespace
 
-std::string motion_view(const std::vector<Fit>& fits, std::optional<std::size_t> method) {
+std::string motion_view(const std::vector<Fit>& fits, const std::string& method) {
   const std::string methods = list_of(fits, [](const Fit& f) { return json_string(f.method); });
   if (fits.empty()) return R"({"methods":[],"method":0,"channels":[],"blocks":[]})";
-  const std::size_t chosen = std::min(method.value_or(fits.size()), fits.size() - 1);
-  const Fit& fit = fits[chosen];
+  const auto asked = std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.method == method; });
+  const Fit& fit = asked != fits.end() ? *asked : fits.back();
   std::vector<std::string> channels;
   for (const ChannelPrediction& c : fit.predictions) {
     channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"figure":{}}})", json_string(c.experiment),
                                    json_string(c.channel), json_words(c.channel),
                                    json_of(report::motion_figure(fit.method, c, std::nullopt))));
   }
-  return fmt::format(R"({{"methods":{},"method":{},"channels":{},"blocks":{}}})", methods, chosen, json_list(channels),
+  return fmt::format(R"({{"methods":{},"method":{},"channels":{},"blocks":{}}})", methods, &fit - fits.data(), json_list(channels),
                      json_of(status_blocks({fit})));
 }
 
@@ -150,7 +150,7 @@ std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std
   if (experiment >= diagnosis.missing.size()) throw InputError("there is no such experiment");
   const MissingForce& missing = diagnosis.missing[experiment];
   if (quantity >= missing.quantities.size()) throw InputError("there is no such quantity");
-  return fmt::format(R"({{"t":{},"values":{},"figure":{}}})", json_numbers(missing.t, 9),
+  return fmt::format(R"({{"t":{},"values":{},"figure":{}}})", json_places(missing.t),
                      json_numbers(display_levels(missing.values[quantity], missing.quantity_units[quantity])),
                      json_of(report::missing_force_by_figure(missing, missing.quantities[quantity])));
 }

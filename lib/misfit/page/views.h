@@ -12,9 +12,9 @@ namespace misfit::page {
 
 // What the page shows of a model, as JSON (json_text.h), from the same figures and blocks as the report.
 
-/// Measured, predicted and residual of every channel by one of the fits. nullopt, or one that is not there: the last, whose residuals the
+/// Measured, predicted and residual of every channel by one of the fits. "", or a method that is not there: the last, whose residuals the
 /// other views are about.
-[[nodiscard]] std::string motion_view(const std::vector<Fit>& fits, std::optional<std::size_t> method);
+[[nodiscard]] std::string motion_view(const std::vector<Fit>& fits, const std::string& method);
 /// Missing force over time; maps over quantities and pairs of them; the names of the quantities.
 /// `before`: the model below it on the ladder, whose maps are drawn beside; nullptr: none.
 [[nodiscard]] std::string where_view(const Place& place, const Place* before);

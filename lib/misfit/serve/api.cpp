@@ -12,6 +12,8 @@
 #include "misfit/core/enum_name.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
 #include "misfit/data/study_reader.h"
 #include "misfit/page/json_text.h"
 #include "misfit/page/views.h"
@@ -28,7 +30,7 @@ using page::json_number;
 using page::json_string;
 using page::Place;
 
-constexpr std::size_t many = 10'000;  // methods, experiments or quantities: more than any study has
+constexpr std::size_t many = 10'000;  // experiments, quantities or candidates: more than any study has
 
 Answer failure(int status, const std::string& why) { return {status, fmt::format(R"({{"error":{}}})", json_string(why))}; }
 
@@ -185,8 +187,10 @@ std::string Api::frame(const Ask& ask) {
 Answer Api::get(const Ask& ask) {
   if (ask.path == "/api/state") return {200, state()};
   if (ask.path == "/api/motion") {
-    const auto method = ask.parameters.contains("method") ? std::optional(number(ask, "method", many)) : std::nullopt;
-    return {200, page::motion_view(page::fits_of(place(ask)), method)};
+    const auto method = ask.parameters.find("method");
+    if (method != ask.parameters.end() && find_estimator(method->second) == nullptr)
+      throw InputError("method: one of " + join_words(estimator_names()) + " is expected");
+    return {200, page::motion_view(page::fits_of(place(ask)), method == ask.parameters.end() ? "" : method->second)};
   }
   if (ask.path == "/api/where") return {200, where(ask)};
   if (ask.path == "/api/samples") return {200, samples(ask)};
@@ -225,13 +229,13 @@ void Api::open_study(Known& known) const {
       name = session.study.name;
       question = session.study.question;
       results_.know_ladder(known_ladder(session).has_value());
-      known.outdated = outdated(session);
-      known.references = references(session);
-      known.settable = settable_of(session);
-      known.effects = effects();
       for (const ExperimentStudy& experiment : session.study.experiments) {
         if (experiment.video) known.films.emplace_back(experiment.name, *experiment.video);
       }
+      known.outdated = outdated(session, results_.places(), registry_);
+      known.references = references(session);
+      known.settable = settable_of(session);
+      known.effects = effects(known.outdated);
     } catch (const std::exception& error) {
       fault = TextFault{error.what(), 0};
     }
@@ -241,10 +245,15 @@ void Api::open_study(Known& known) const {
                   json_string(results_.study().string()), json_string(results_.folder().string()), json_of(fault));
 }
 
-std::vector<Addable> Api::effects() const {
+std::vector<Addable> Api::effects(std::vector<std::string>& faults) const {
   const Place last = results_.places().back();
   const SessionOptions options = last.id == 0 ? options_ : options_for(options_, last.study);
-  return addable_effects(Session(options, registry_, RunFolder::Access::read), page::discovery_of(last));
+  try {
+    return addable_effects(Session(options, registry_, RunFolder::Access::read), page::discovery_of(last));
+  } catch (const std::exception& error) {
+    faults.push_back(std::string("No effect can be added: ") + error.what());
+    return {};
+  }
 }
 
 std::shared_ptr<const Api::Known> Api::known() {
@@ -275,10 +284,10 @@ Answer Api::study(const Place& place) const {
 }
 
 Answer Api::save(const std::string& text, const std::string& hash) {
+  const std::string whole = text.ends_with('\n') ? text : text + "\n";
+  const std::lock_guard lock(mutex_);  // no command begins meanwhile
   if (jobs_.report().state == JobState::running)
     return failure(409, "a command is at work: wait for its end, or stop it, before the study is changed");
-  const std::string whole = text.ends_with('\n') ? text : text + "\n";
-  const std::lock_guard lock(mutex_);
   if (const auto fault = save_text(results_.study(), whole, hash, registry_))
     return {422, fmt::format(R"({{"error":{},"faults":{}}})", json_string(fault->message),
                              json_of(faults_of(results_.study(), whole, registry_)))};

@@ -54,8 +54,8 @@ class Api {
   [[nodiscard]] std::string state();
   [[nodiscard]] std::shared_ptr<const Known> known();
   void open_study(Known& known) const;
-  /// Of the last model of the ladder.
-  [[nodiscard]] std::vector<Addable> effects() const;
+  /// Of the last model of the ladder. None where it cannot be opened: `faults` then says why.
+  [[nodiscard]] std::vector<Addable> effects(std::vector<std::string>& faults) const;
   [[nodiscard]] Answer study(const page::Place& place) const;
   [[nodiscard]] Answer start(const JobRequest& request);
   /// Behind the study, out of what is known here: nothing of a request becomes a word of a command. InputError: it is not.

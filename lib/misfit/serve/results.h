@@ -17,7 +17,7 @@ class Results {
 
   [[nodiscard]] const std::filesystem::path& study() const { return study_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Another text whenever a file of the study or of its ladder may have changed.
+  /// Another text whenever a file that the study names, or one of its results or of its ladder, may have changed.
   [[nodiscard]] std::string version() const;
   /// The models: those of the ladder where it is that of the study as it is now.
   [[nodiscard]] std::vector<page::Place> places() const { return page::places_of(study_, folder_, ladder_is_current_); }
@@ -29,7 +29,8 @@ class Results {
   mutable std::atomic<bool> ladder_is_current_ = true;
 };
 
-/// What of the results does not belong to the study as it is now, in sentences. `session`: opened to read.
-[[nodiscard]] std::vector<std::string> outdated(const Session& session);
+/// What of the results does not belong to the study as it is now, in sentences: of its own model and of the rungs among `places`.
+/// `session`: the study, opened to read; `registry`: of the program.
+[[nodiscard]] std::vector<std::string> outdated(const Session& session, const std::vector<page::Place>& places, const Registry& registry);
 
 }  // namespace misfit::serve

@@ -16,11 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string head() {
-  return "#!/bin/sh\n# What was done in the page of `misfit open`, as commands. On the study as it was at first, and without its folder of "
-         "results,\n# sh session.sh gives the same again.\n"
-         "set -e\ncd -- " +
-         shell_word(fs::current_path().string()) + "\n";
+constexpr const char* head =
+    "#!/bin/sh\n# What was done in the page of `misfit open`, as commands. On the study as it was at first, and without its folder of "
+    "results,\n# sh session.sh gives the same again.\nset -e\n";
+
+/// The line that goes to the folder in which a command is typed; empty where the lines before it have gone there.
+std::string way_there(const std::string& before) {
+  const std::string line = "cd -- " + shell_word(fs::current_path().string()) + "\n";
+  const std::size_t last = before.rfind("\ncd -- ");
+  return last != std::string::npos && before.compare(last + 1, line.size(), line) == 0 ? "" : line;
 }
 
 /// A word that is no line of the text.
@@ -60,7 +64,7 @@ void SessionScript::append(const std::string& lines) const {
   make_writable_folder(path_.parent_path());
   const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
   if (file < 0) throw WriteError(path_.string() + ": cannot be written: " + std::strerror(errno));
-  const std::string all = (::lseek(file, 0, SEEK_END) == 0 ? head() : "") + lines;
+  const std::string all = (::lseek(file, 0, SEEK_END) == 0 ? head : "") + way_there(text()) + lines;
   const bool whole = ::write(file, all.data(), all.size()) == static_cast<ssize_t>(all.size());
   const int error = errno;
   ::close(file);

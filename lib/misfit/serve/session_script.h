@@ -13,7 +13,8 @@ namespace misfit::serve {
 /// through a link.
 class SessionScript {
  public:
-  /// `folder`: the run folder; commands are those typed in the current folder.
+  /// `folder`: the run folder; commands are those typed in the current folder, to which a line goes where those before were typed in
+  /// another.
   explicit SessionScript(const std::filesystem::path& folder) : path_(folder / "session.sh") {}
 
   void record(const std::string& command) const { append(command + "\n"); }

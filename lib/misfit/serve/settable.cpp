@@ -11,6 +11,9 @@
 #include "misfit/core/units.h"
 #include "misfit/model/provisional.h"
 #include "misfit/page/json_text.h"
+#include "misfit/page/read_if.h"
+#include "misfit/workflow/estimate/estimate.h"
+#include "misfit/workflow/session/study_change.h"
 
 namespace misfit::serve {
 namespace {
@@ -40,7 +43,7 @@ void expect_end(std::string_view text) {
 std::string interval_of(std::string_view value) {
   const double from = number_of(value), to = number_of(value);
   expect_end(value);
-  return fmt::format("[{:.6g}, {:.6g}]", from, to);
+  return fmt::format("[{}, {}]", from, to);
 }
 
 std::string roughness_of(std::string_view value) {
@@ -54,7 +57,11 @@ std::string roughness_of(std::string_view value) {
 }  // namespace
 
 Settable settable_of(const Session& session) {
-  const Model model = provisional_model(session.model.request, session.registry);
+  ModelRequest request = session.model.request;
+  const std::filesystem::path camera = session.folder.file("camera.json");
+  if (const auto calibration = page::read_if(camera, [&] { return read_calibration(camera); }))
+    add_camera(*calibration, session.registry, request);  // what it has calibrated is estimated, too
+  const Model model = provisional_model(request, session.registry);
   Settable out;
   for (const misfit::Parameter& p : model.parameters) {
     if (p.curve < 0) out.parameters.push_back({p.name, p.unit, p.free});
@@ -63,7 +70,11 @@ Settable settable_of(const Session& session) {
     out.parameters.push_back({c.name, c.unit, model.parameters[c.first].free});
     out.curves.push_back({c.name, roughness_unit(c), c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
   }
-  for (const ExperimentStudy& experiment : session.study.experiments) out.experiments.push_back(experiment.name);
+  const std::vector<ExperimentStudy>& all = session.study.experiments;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool holds_a_file_out = k + 1 < all.size() && is_held_out_file(all, k + 1);
+    if (!holds_a_file_out && !is_held_out_file(all, k)) out.experiments.push_back(all[k].name);
+  }
   return out;
 }
 

@@ -19,7 +19,7 @@ struct Settable {
   };
   std::vector<Parameter> parameters;  ///< a curve as a whole is one, too
   std::vector<Curve> curves;
-  std::vector<std::string> experiments;
+  std::vector<std::string> experiments;  ///< of which a part can be held out: those that hold no file out as a whole
 };
 [[nodiscard]] Settable settable_of(const Session& session);
 [[nodiscard]] std::string json_of(const Settable& settable);

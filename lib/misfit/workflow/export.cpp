@@ -62,6 +62,7 @@ Chosen open(const SessionOptions& options, const Registry& registry, const std::
 StageInputs essential(StageInputs inputs) {
   inputs.erase("program");
   inputs.erase("time_limit");
+  inputs.erase("usual_limit");
   return inputs;
 }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
+#include "misfit/core/config.h"
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/file_name.h"
@@ -155,17 +157,12 @@ std::string held_in_words(const std::map<std::string, Estimate>& held) {
 }
 
 StageInputs inputs_of_ladder(const Session& session) {
-  std::vector<fs::path> files;
-  for (const auto& experiment : session.study.experiments) {
-    for (const auto& file : {experiment.track, experiment.video, experiment.data}) {
-      if (file) files.push_back(*file);
-    }
-  }
-  for (const auto& file : {session.study.camera.sweep, session.study.camera.sweep_images}) {
-    if (file) files.push_back(*file);
-  }
-  if (session.study.system_file) files.push_back(*session.study.system_file);
-  auto out = session.inputs(session.study.text, files);
+  Study study = session.study;
+  study.reference.clear();  // no rung depends on them
+  const std::vector<fs::path> named = files_of_study(study);
+  std::set<fs::path> files(named.begin(), named.end());  // many pictures of a sweep are in one video
+  files.erase(study.file);
+  auto out = session.inputs(config::content_of(study.text), {files.begin(), files.end()});
   out.erase("program");  // a new build refits the rungs; it does not start a new ladder
   return out;
 }
@@ -228,8 +225,15 @@ Session& ModelLadder::last() {
                      root_.folder.file(ladder_name).string() + " to start a new one");
     root_.note(fmt::format("continuing from rung {} of the ladder, {}", rung.id, study.parent_path().lexically_normal().string()));
     last_ = std::make_unique<Session>(options_for(options_, study), registry_);
+    if (limits_fits_) last_->usual_limit = usual_limit(options_, seconds_of_fit(ladder_.rungs[ladder_.rungs.size() - 2]));
   }
   return *last_;
+}
+
+double ModelLadder::seconds_of_fit(const Rung& rung) const {
+  const fs::path results = rung.parent < 0 ? root_.folder.path() : root_.folder.file(rung.study).parent_path() / "out";
+  const fs::path fit = results / "fit" / method;
+  return fs::exists(fit / "fit.json") ? read_fit(fit).seconds : 0.0;
 }
 
 const Rung& ModelLadder::last_rung() {

@@ -14,7 +14,8 @@ namespace misfit {
 /// out/ beside it.
 class ModelLadder {
  public:
-  /// Opens the study and its ladder. A ladder of a study or data that have changed since is replaced by a new one; a note says so.
+  /// Opens the study and its ladder. A ladder of a study (comments and references aside) or of files of it that have changed
+  /// since is replaced by a new one; a note says so.
   ModelLadder(const SessionOptions& options, const Registry& registry);
 
   [[nodiscard]] Session& root() { return root_; }
@@ -44,6 +45,8 @@ class ModelLadder {
 
  private:
   [[nodiscard]] std::string relative_study(const Session& session) const;
+  /// [s] That its fit took; 0: it is not there.
+  [[nodiscard]] double seconds_of_fit(const Rung& rung) const;
   /// The study of a rung that is to be added.
   struct NewStudy {
     int id = 0;

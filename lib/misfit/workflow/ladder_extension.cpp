@@ -10,6 +10,7 @@
 #include "misfit/core/text.h"
 #include "misfit/data/candidates.h"
 #include "misfit/jobs/interrupt.h"
+#include "misfit/model/provisional.h"
 #include "misfit/workflow/assess/without.h"
 #include "misfit/workflow/ladder.h"
 
@@ -42,6 +43,15 @@ std::vector<Candidate> alternatives_to(const Candidate& accepted, const Discover
 Candidate without_refit(Candidate candidate) {
   candidate.refit_values.clear();
   candidate.refit_log_noise.clear();
+  return candidate;
+}
+
+/// It holds nothing that the model does not have: what it held may have left with another effect.
+Candidate as_in(const Session& session, Candidate candidate) {
+  const Model model = provisional_model(session.model.request, session.registry);
+  std::erase_if(candidate.held, [&](const auto& held) {
+    return std::none_of(model.parameters.begin(), model.parameters.end(), [&](const Parameter& p) { return p.name == held.first; });
+  });
   return candidate;
 }
 
@@ -217,13 +227,18 @@ class Extension {
       if (instead && !add(without_refit(*instead), {})) return false;
       if (same_effect) added_.back().width_freed = true;
       for (const OnLadder& again : above) {
-        if (!add(without_refit(again.from), again.alternatives)) return false;
+        if (!add(as_in(ladder_.last(), without_refit(again.from)), again.alternatives)) return false;
       }
+    } catch (const InputError& error) {  // it needs what has left
+      return cannot_be_fitted_again(error);
     } catch (const RunError& error) {
-      ladder_.root().note(std::string("a rung could not be fitted again: ") + error.what());
-      return false;
+      return cannot_be_fitted_again(error);
     }
     return true;
+  }
+  bool cannot_be_fitted_again(const std::exception& error) {
+    ladder_.root().note(std::string("a rung could not be fitted again: ") + error.what());
+    return false;
   }
 
   /// Effects that somebody added by hand are not taken off, but it is said.
@@ -232,7 +247,9 @@ class Extension {
       if (rung.id == ladder_.ladder().rungs.back().id) break;  // nothing was added after it
       const bool own = std::any_of(added_.begin(), added_.end(), [&](const OnLadder& a) { return a.rung == rung.id; });
       const auto& effects = ladder_.last().model.request.effects;
-      const auto bound = std::find_if(effects.begin(), effects.end(), [&](const EffectRequest& e) { return e.kind == rung.added; });
+      const auto bound = std::find_if(effects.begin(), effects.end(), [&](const EffectRequest& e) {
+        return e.kind == rung.added && e.roles == rung.roles.value_or(std::map<std::string, std::string>{});
+      });
       if (rung.parent < 0 || own || bound == effects.end()) continue;
       if (const auto without = needless(ladder_.last(), bound->name, families_))
         ladder_.root().note(in_words(bound->name, *without, families_) +

@@ -2,9 +2,10 @@
 import { element } from '/dom.js';
 
 export function editor({ get, post, look }) {
+  // Of the study itself, also while the text of a rung is shown, which can only be read:
   let known = null; // as it lies on disk
   let text = null; // as it is typed; null: unchanged
-  let faults = [], timer = 0, parts = null;
+  let faults = [], timer = 0, parts = null; // of what is shown
   let saved = false; // by this page, and unchanged since
 
   const changed = () => text !== null && text !== known?.text;
@@ -32,18 +33,19 @@ export function editor({ get, post, look }) {
     parts.area.setSelectionRange(begin, end < 0 ? parts.area.value.length : end);
     parts.area.scrollTop = Math.max(0, (line - 5) * parseFloat(getComputedStyle(parts.area).lineHeight));
   }
-  const verdict = () => tell(faults.length > 0 ? faults[0].message : changed() ? 'Nothing is wrong with it; not saved yet.' : saved ? 'Saved. Run makes the results anew.' : 'Nothing is wrong with it.', faults.length > 0 ? 'fault' : 'fine');
+  const verdict = () => tell(faults.length > 0 ? faults[0].message : parts.editable && changed() ? 'Nothing is wrong with it; not saved yet.' : parts.editable && saved ? 'Saved. Run makes the results anew.' : 'Nothing is wrong with it.', faults.length > 0 ? 'fault' : 'fine');
 
   async function check() {
-    const asked = parts.area.value;
+    const mine = parts, asked = parts.area.value;
+    const current = () => mine === parts && asked === parts.area.value;
     try {
       const answer = await post('check', { text: asked });
-      if (asked !== parts.area.value) return;
+      if (!current()) return;
       faults = answer.faults;
       number();
       verdict();
     } catch (error) {
-      tell(error.message, 'fault');
+      if (current()) tell(error.message, 'fault');
     }
   }
   function typed() {
@@ -55,18 +57,21 @@ export function editor({ get, post, look }) {
     timer = setTimeout(check, 300);
   }
   async function save() {
+    const asked = text;
     try {
-      const answer = await post('save', { text: parts.area.value, hash: known.hash });
-      known = { ...known, text: parts.area.value, hash: answer.hash };
-      text = null;
-      faults = [];
-      saved = true;
-      number();
-      verdict();
+      const answer = await post('save', { text: asked, hash: known.hash });
+      known = { ...known, text: asked, hash: answer.hash, faults: [] };
+      if (text === asked) text = null; // else it was typed on meanwhile, and is checked again
+      saved = text === null;
+      if (saved && parts.editable) {
+        faults = [];
+        number();
+        verdict();
+      }
       await look();
       if (document.activeElement === document.body) document.querySelector('#view textarea')?.focus({ preventScroll: true }); // it may have been made anew
     } catch (error) {
-      faults = error.answer?.faults ?? faults;
+      if (parts.editable && text === asked) faults = error.answer?.faults ?? faults;
       number();
       tell(error.message, 'fault');
     }
@@ -81,16 +86,17 @@ export function editor({ get, post, look }) {
 
   async function show(view, model) {
     const fresh = await get('study', { model });
+    clearTimeout(timer);
     const kept = fresh.editable && changed();
-    if (!kept) {
+    if (fresh.editable && !kept) {
       if (fresh.hash !== known?.hash) saved = false;
       known = fresh;
       text = null;
-      faults = fresh.faults;
     }
+    faults = kept ? [] : fresh.faults;
     const area = element('textarea', { spellcheck: 'false', wrap: 'off', 'aria-label': 'Text of the study', readonly: !fresh.editable, oninput: typed });
     area.value = kept ? text : fresh.text;
-    parts = { area, lines: element('pre', { 'aria-hidden': 'true' }), message: element('p', { 'aria-live': 'polite', id: 'check' }),
+    parts = { editable: fresh.editable, area, lines: element('pre', { 'aria-hidden': 'true' }), message: element('p', { 'aria-live': 'polite', id: 'check' }),
       furtherHead: element('p', { hidden: true }, 'Further, with the values in the lines above left out:'), further: element('ul', { class: 'fault', id: 'further' }),
       save: element('button', { id: 'save', class: 'main', onclick: save }, 'Save'), undo: element('button', { onclick: undo }, 'Undo all') };
     area.addEventListener('scroll', () => (parts.lines.scrollTop = area.scrollTop));

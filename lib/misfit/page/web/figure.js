@@ -270,7 +270,7 @@ class Plot {
       scales: { x: { time: false, auto: false, range: (u, a, b) => [a, b] }, y: { auto: false, range: (u, a, b) => [a, b] } },
       axes: this.axes(), series: [{}, { points: { show: false } }],
       cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false }, ...(group ? { sync: { key: 'time', setSeries: false } } : {}),
-        bind: { mousedown: (u, target, handler) => (event) => { if (group) group.pressed = this; this.shift = event.shiftKey; handler(event); }, dblclick: () => () => this.all() } },
+        bind: { mousedown: (u, target, handler) => (event) => { if (group) group.pressed = this; this.shift = event.shiftKey; this.dragged = false; handler(event); }, dblclick: () => () => this.all() } },
       hooks: { draw: [() => this.paint()], setCursor: [() => this.read()], setSelect: [() => this.selected()] },
     };
     this.u = new uPlot(options, [this.xRange, [null, null]], this.host);

@@ -11,7 +11,7 @@ const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
-const here = { state: null, model: 0, tab: 'where', method: null, experiment: 0, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false, late: false };
+const here = { state: null, model: 0, tab: 'where', method: null, name: undefined, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false, late: false, chosen: false };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
@@ -41,7 +41,7 @@ async function look() {
     const grown = here.models !== undefined && state.models.length > here.models;
     version = state.version;
     here.models = state.models.length;
-    if (grown || here.model >= state.models.length) here.model = state.models.length - 1;
+    if ((grown && !inHand()) || here.model >= state.models.length) here.model = state.models.length - 1;
     showHead();
     await showAll();
   }
@@ -253,22 +253,28 @@ async function start(key, verb, more = {}) {
 
 // ---- over time
 
-/** Of the last method until another one is chosen. */
+/** By the method that was chosen, by its name; of the last one until then, and where the model has none of that name. */
 const askForMotion = () => get('motion', { model: here.model, ...(here.method === null ? {} : { method: here.method }) });
 
 async function showMotion(motion = null) {
   motion = here.motion = motion ?? await askForMotion();
-  here.method = motion.method;
   at('methods').hidden = motion.methods.length === 0;
-  at('method').replaceChildren(...motion.methods.map((name, k) => element('option', { value: k }, name)));
-  at('method').value = here.method;
+  at('method').replaceChildren(...motion.methods.map((name) => element('option', { value: name }, name)));
+  at('method').value = motion.methods[motion.method];
   const names = [...new Set([...motion.channels.map((c) => c.experiment), ...(here.where?.force ?? []).map((f) => f.experiment), ...here.state.films])];
-  if (here.experiment >= names.length) here.experiment = 0;
-  here.name = names[here.experiment];
+  chooseExperiment(names.includes(here.name) ? here.name : names[0]);
   at('experiments').hidden = names.length < 2;
-  at('experiment').replaceChildren(...names.map((name, k) => element('option', { value: k }, name)));
-  at('experiment').value = here.experiment;
+  at('experiment').replaceChildren(...names.map((name) => element('option', { value: name }, name)));
+  at('experiment').value = here.name;
   drawTime();
+}
+
+/** Marks and zoom are of one recording: they do not go with the choice of another one. */
+function chooseExperiment(name) {
+  if (name === here.name) return;
+  here.name = name;
+  time.zoom(null);
+  unmark();
 }
 
 function drawTime() {
@@ -355,7 +361,7 @@ class Film {
     if (predicted) cross.setAttribute('d', `M${predicted[0] - size} ${predicted[1]}h${2 * size}M${predicted[0]} ${predicted[1] - size}v${2 * size}`);
     const said = [`Frame at ${shown(frame.t, 5)} s`];
     if (measured) said.push('yellow: measured');
-    if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.method]}`);
+    if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.motion.method]}`);
     at('frame-words').textContent = said.join(' · ');
   }
   /** [px] null: there is none at the frame's time. */
@@ -376,7 +382,10 @@ function valueAt(figure, kind, t) {
 }
 
 function mark(intervals, text, fixed) {
-  if (fixed) Object.assign(here, { fixed: intervals, marked: text });
+  if (fixed) {
+    Object.assign(here, { fixed: intervals, marked: text });
+    time.begun = undefined;
+  }
   const shownNow = intervals.length > 0 || fixed ? intervals : here.fixed;
   time.setMarks(shownNow);
   at('marked').textContent = at('marked').title = intervals.length > 0 ? text : here.marked;
@@ -396,6 +405,12 @@ function unmark() {
 time.onzoom = (window) => { at('time').dataset.window = window === null ? '' : window.join(' '); };
 time.onbegun = (t) => { at('marked').textContent = `Marked from ${shown(t, 5)} s: m again where it ends`; };
 time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${shown(from, 5)} s to ${shown(to, 5)} s`, true);
+
+/** Two times, to a millionth of what lies between them: a mouse knows no more. */
+function written([from, to]) {
+  const places = Math.min(Math.max(Math.ceil(6 - Math.log10(to - from)), 0), 15);
+  return [from, to].map((t) => String(Number(t.toFixed(places)))).join(' ');
+}
 
 /** The samples of the marked times, in the view of force against a quantity. */
 function markPoints() {
@@ -575,9 +590,10 @@ class AddedForces {
     });
   }
   async show(own) {
-    const mine = ++this.turn;
+    const mine = ++this.turn, { model, name } = here;
     const figure = own && missing() ? await get('added', { model: here.model, experiment: placeOfMissing(), candidate: own.candidate }).catch(() => null) : null;
-    if (mine === this.turn && here.tab === 'candidates') drawForce(figure ? { name: own.name, figure } : null);
+    const shown = model === here.model && name === here.name && here.tab === 'candidates' && own?.button.isConnected !== false;
+    if (mine === this.turn && shown) drawForce(figure ? { name: own.name, figure } : null);
   }
 }
 
@@ -638,10 +654,10 @@ function roughnessOf(paths, figures, parent) {
   const value = () => Math.exp(between(path.roughness.map(Math.log), mixed));
   function move() {
     const asFitted = slider.valueAsNumber === used();
-    for (const figure of figures) figure.overlay = [];
+    for (const figure of figures) figure.overlay = (figure.overlay ?? []).filter((s) => s.of !== slider); // other curves keep theirs
     for (const c of asFitted ? [] : path.curves) {
       const y = between(c.values, (a, b, share) => a.map((v, i) => mixed(v, b[i], share)));
-      figures[c.figure]?.overlay.push({ x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
+      figures[c.figure]?.overlay.push({ of: slider, x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
     }
     for (const figure of figures) figure.redraw();
     const support = between(path.support, mixed), freedom = path.freedom && `; ${path.freedom} effective degrees of freedom`;
@@ -767,7 +783,8 @@ async function showAll() {
       here.where = where;
       await showMotion(motion);
       mark([], '', true);
-      here.late = inHand();
+      here.late = inHand() && !here.chosen;
+      here.chosen = false;
       if (!here.late) await showView();
     }
   } finally {
@@ -778,6 +795,7 @@ async function showAll() {
 function choose(model) {
   for (const question of at('view').querySelectorAll('.asking')) question.remove(); // it was about another one
   here.model = model;
+  here.chosen = true; // what is typed in the study is kept by the editor
   at('model').value = model;
   showAll().catch(say);
 }
@@ -812,11 +830,11 @@ function begin() {
   at('add').addEventListener('click', () => start('add', 'add', { effect: at('effect').value }));
   at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
   at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
-  at('method').addEventListener('change', (event) => { here.method = Number(event.target.value); showMotion().catch(say); });
-  at('experiment').addEventListener('change', (event) => { here.experiment = Number(event.target.value); showMotion().then(showView).catch(say); });
+  at('method').addEventListener('change', (event) => { here.method = event.target.value; showMotion().catch(say); });
+  at('experiment').addEventListener('change', (event) => { chooseExperiment(event.target.value); showMotion().then(showView).catch(say); });
   at('whole').addEventListener('click', () => time.zoom(null));
   at('unmark').addEventListener('click', unmark);
-  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: here.fixed[0].join(' ') }));
+  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: written(here.fixed[0]) }));
   addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
   addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
   onScreenChange(() => { drawTime(); showView().catch(say); });

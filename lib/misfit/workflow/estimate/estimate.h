@@ -24,6 +24,8 @@ struct Prepared {
 [[nodiscard]] bool predicts_pixels(const SystemSpec& spec);
 /// A system that predicts the image sees it through the study's camera: values and sigmas of the calibration, and its projection.
 void add_camera(Session& session, ModelRequest& request);
+/// The same with a calibration that is there already.
+void add_camera(const Calibration& calibration, const Registry& registry, ModelRequest& request);
 /// For the study's own system.
 [[nodiscard]] Prepared prepare(Session& session);
 /// For the regression form of sliding_bin; nullopt where the system has none. Names of effects it leaves out go to `left_out`.
@@ -46,7 +48,8 @@ struct FilterWork {
 /// filter_error's estimate: the one of this run of the program, else estimated again (about two seconds, and the same answer). RunError
 /// with the fit's words if it declined.
 [[nodiscard]] std::shared_ptr<const FilterWork> filter_work(Session& session);
-/// What a fit by `method` depends on: not comments and spaces of the study, nor the tables and keys in `without` (config::content_of).
+/// What a fit by `method` depends on: not comments and spaces of the study, nor the tables and keys in `without` (config::content_of). The
+/// usual limit of the session only where it has cut the fit off: then a fit with more time is another one.
 [[nodiscard]] StageInputs inputs_of_fit(const Session& session, const std::string& method, const std::vector<std::string>& without = {});
 /// Everything the fits left on disk.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_fits(const Session& session, const std::vector<Fit>& fits);

@@ -52,6 +52,7 @@ MethodRun Methods::run(const std::string& method) {
     }
   }
   out.at.time_limit = session_.fit_limit();
+  out.out_of_time = out.at.fitted.fit.status != FitStatus::converged && watch.spent();
   return out;
 }
 

@@ -17,6 +17,7 @@ namespace misfit {
 struct MethodRun {
   FittedMethod at;  ///< at.fitted.fit is the fit
   std::shared_ptr<const FilterWork> filter;
+  bool out_of_time = false;  ///< cut off by the time limit of the session
 };
 
 /// The methods of a study on its data. They share the prepared model and the regression that starts the others: each is made when first

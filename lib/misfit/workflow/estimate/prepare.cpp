@@ -146,18 +146,22 @@ bool predicts_pixels(const SystemSpec& spec) {
 
 void add_camera(Session& session, ModelRequest& request) {
   const SystemType& type = session.registry.system(request.system, request.system_where);
+  if (!predicts_pixels(type.make(request.options)->spec())) return;
+  if (const std::optional<Calibration> calibration = calibrate_stage(session)) add_camera(*calibration, session.registry, request);
+}
+
+void add_camera(const Calibration& calibration, const Registry& registry, ModelRequest& request) {
+  const SystemType& type = registry.system(request.system, request.system_where);
   const SystemSpec spec = type.make(request.options)->spec();
   if (!predicts_pixels(spec)) return;
-  const std::optional<Calibration> calibration = calibrate_stage(session);
-  if (!calibration) return;
   const auto has_flag = std::find(type.flags.begin(), type.flags.end(), "plane_by_plane") != type.flags.end();
-  if (has_flag) request.options.flags.emplace("plane_by_plane", calibration->model == CameraModel::plane_by_plane);
+  if (has_flag) request.options.flags.emplace("plane_by_plane", calibration.model == CameraModel::plane_by_plane);
   for (const char* name : camera_parameter_names) {
     const bool known = std::any_of(spec.constants.begin(), spec.constants.end(), [&](const ConstantSpec& c) { return c.name == name; });
     if (!known || request.constants.contains(name)) continue;
-    request.constants[name] = calibration->value(name);
-    if (!(calibration->sigma(name) > 0.0)) continue;
-    request.constant_sigmas[name] = calibration->sigma(name);
+    request.constants[name] = calibration.value(name);
+    if (!(calibration.sigma(name) > 0.0)) continue;
+    request.constant_sigmas[name] = calibration.sigma(name);
     // Free, with the calibration as its prior: so its uncertainty is in every interval (marginal sigmas; their correlations are left out,
     // which makes intervals a little wider). A study can fix it again.
     if (!request.parameters.contains(name)) request.parameters[name].free = true;

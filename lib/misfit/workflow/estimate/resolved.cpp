@@ -14,6 +14,7 @@
 #include "misfit/data/study_keys.h"
 #include "misfit/inference/gaps.h"
 #include "misfit/workflow/estimate/estimate.h"
+#include "misfit/workflow/session/study_change.h"
 
 namespace misfit {
 namespace {
@@ -47,8 +48,7 @@ class Resolved {
     const std::vector<ExperimentStudy>& all = session_.study.experiments;
     int number = -1;
     for (std::size_t e = 0; e < all.size(); ++e) {
-      const bool of_last = e > 0 && all[e].where.line == all[e - 1].where.line && all[e].where.column == all[e - 1].where.column;
-      if (!of_last) set_experiment(all[e], ++number);
+      if (!is_held_out_file(all, e)) set_experiment(all[e], ++number);
     }
   }
 

@@ -1,5 +1,7 @@
 #include <fmt/ranges.h>
 
+#include <cstdlib>
+
 #include "misfit/core/config.h"
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
@@ -18,6 +20,16 @@ void resolved_stage(Session& session, Methods& methods) {
   session.do_stage("resolved", inputs, {"resolved.toml"}, [&](const fs::path& dir) { write_resolved(session, methods.prepared(), dir); });
 }
 
+constexpr const char* usual_limit_key = "usual_limit";
+
+/// [s] Of a fit that the usual limit cut off; nullopt: it was not.
+std::optional<double> limit_that_cut_off(const Session& session, const std::string& stage) {
+  const auto known = session.folder.stages().find(stage);
+  if (known == session.folder.stages().end()) return std::nullopt;
+  const auto limit = known->second.inputs.find(usual_limit_key);
+  return limit == known->second.inputs.end() ? std::nullopt : std::optional(std::strtod(limit->second.c_str(), nullptr));
+}
+
 }  // namespace
 
 StageInputs inputs_of_fit(const Session& session, const std::string& method, const std::vector<std::string>& without) {
@@ -32,6 +44,9 @@ StageInputs inputs_of_fit(const Session& session, const std::string& method, con
   }
   StageInputs inputs = session.inputs(method + "\n" + config::content_of(session.study.text, without), files);
   if (session.options.time_limit) inputs["time_limit"] = fmt::format("{} s", *session.options.time_limit);
+  const std::optional<double> cut_off = limit_that_cut_off(session, "fit/" + method);
+  const double limit = session.asked_limit() ? 0.0 : session.usual_limit;
+  if (cut_off && limit > 0.0 && limit <= *cut_off) inputs[usual_limit_key] = fmt::format("{} s", *cut_off);  // no more time now than then
   return inputs;
 }
 
@@ -57,8 +72,11 @@ std::vector<Fit> fit_stage(Session& session, const std::vector<std::string>& nam
   for (std::size_t k = 0; k < names.size(); ++k) {
     stop_if_interrupted();
     const std::string stage = "fit/" + names[k];
-    session.do_stage(stage, inputs_of_fit(session, names[k]), {stage + "/fit.json"}, [&](const fs::path& dir) {
+    StageInputs inputs = inputs_of_fit(session, names[k]);
+    session.do_stage(stage, inputs, {stage + "/fit.json"}, [&](const fs::path& dir) {
       MethodRun run = methods.run(names[k]);
+      inputs.erase(usual_limit_key);
+      if (run.out_of_time && !session.asked_limit()) inputs[usual_limit_key] = fmt::format("{} s", session.usual_limit);  // recorded so
       if (run.filter) session.filter = std::move(run.filter);
       write_fit(dir / stage, run.at.fitted.fit);
     });

@@ -29,20 +29,28 @@ TomlPath path_of(const std::string& key) {
   throw InputError("'" + shown(key) + "': a key is expected, as parameters.k.free or curves.C_m.roughness");
 }
 
-/// Experiments of the text by their names: what stands behind "experiment." becomes the number of the element.
+/// Experiments of the text by their names: what stands behind "experiment." becomes the number of the element; of a single [experiment]
+/// it goes.
 TomlPath with_number_of_experiment(const Study& study, TomlPath path) {
   if (path.size() < 3 || path.front() != "experiment") return path;
   std::vector<std::string> names;
-  for (const ExperimentStudy& experiment : study.experiments) {
-    names.push_back(experiment.name);
-    if (experiment.name != path[1]) continue;
-    for (const TomlNode& node : toml_outline(study.text)) {
-      if (node.path.size() != 2 || node.path.front() != "experiment") continue;
-      const auto lines = std::count(study.text.begin(), study.text.begin() + static_cast<std::ptrdiff_t>(node.begin), '\n');
-      if (lines + 1 != experiment.where.line) continue;
-      path[1] = node.path.back();
+  int number = -1;  // of the table
+  for (std::size_t k = 0; k < study.experiments.size(); ++k) {
+    const bool held_out = is_held_out_file(study.experiments, k);
+    if (!held_out) ++number;
+    const std::string& name = study.experiments[k].name;
+    if (name == path[1]) {
+      if (held_out)
+        throw InputError("'" + shown(name) + "' is the recording that '" + shown(study.experiments[k - 1].name) +
+                         "' holds out as a whole: it has no keys of its own");
+      const TomlPath element{"experiment", std::to_string(number)};
+      const std::vector<TomlNode> nodes = toml_outline(study.text);
+      const bool array = std::any_of(nodes.begin(), nodes.end(), [&](const TomlNode& node) { return node.path == element; });
+      if (array) path[1] = element.back();
+      if (!array) path.erase(path.begin() + 1);
       return path;
     }
+    if (!held_out) names.push_back(name);
   }
   throw InputError("no experiment is called '" + shown(path[1]) + "'" + suggest(path[1], names));
 }
@@ -95,6 +103,12 @@ std::optional<Shortened> without_value_in(const std::string& text, int line) {
 }
 
 }  // namespace
+
+bool is_held_out_file(const std::vector<ExperimentStudy>& experiments, std::size_t k) {
+  if (k == 0) return false;
+  const Source &own = experiments[k].where, &before = experiments[k - 1].where;  // of the table that both are read from
+  return own.line == before.line && own.column == before.column;
+}
 
 std::optional<TextFault> fault_of(const fs::path& file, const std::string& text, const Registry& registry) {
   if (text.find('\0') != std::string::npos) return TextFault{"the text contains a byte 0", 0};

@@ -28,6 +28,9 @@ struct TextFault {
 [[nodiscard]] std::optional<TextFault> save_text(const std::filesystem::path& file, const std::string& text, const std::string& hash_before,
                                                  const Registry& registry);
 
+/// Is experiment `k` the recording that the one before it holds out as a whole (validation = FILE)? It has no table in the text.
+[[nodiscard]] bool is_held_out_file(const std::vector<ExperimentStudy>& experiments, std::size_t k);
+
 /// A key and its value, as `misfit set` takes them: "parameters.k.free=false".
 struct Setting {
   std::string key, value;  ///< as written; value: TOML, or any text
@@ -35,9 +38,9 @@ struct Setting {
 /// InputError: there is no '=', or nothing on one of its sides.
 [[nodiscard]] Setting read_setting(const std::string& words);
 
-/// The text of a study with other values; a key begins with the name of a section. [[experiment]] elements go by the experiment's name:
-/// experiment.NAME.validation. A value that is no TOML is a text. InputError naming the key: it is not written as a key, there is no such
-/// experiment, or with_value() refuses it.
+/// The text of a study with other values; a key begins with the name of a section. [experiment] and the elements of [[experiment]] go by
+/// the experiment's name: experiment.NAME.validation. A value that is no TOML is a text. InputError naming the key: it is not written as a
+/// key, there is no such experiment, it is a recording that another one holds out, or with_value() refuses it.
 [[nodiscard]] std::string with_settings(const Study& study, const std::vector<Setting>& settings);
 
 }  // namespace misfit
