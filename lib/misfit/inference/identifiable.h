@@ -13,13 +13,14 @@ namespace misfit {
 [[nodiscard]] std::string without_effect(const Model& model, const Eigen::VectorXd& information);
 
 /// Which free parameters these data do not determine, as a sentence: a parameter that no residual depends on, or several of which only a
-/// combination acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N (columns scaled to unit
-/// diagonal, priors included, curves held by their roughness left out; further columns of N, initial states, are projected out) with
-/// eigenvalues below 1e-10 of the largest. Empty if every parameter is determined.
+/// combination acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N with the priors (scaled to
+/// unit diagonal; curves, held by their roughness, are left out; further columns of N, initial states, are projected out) with
+/// eigenvalues below 1e-10 of the largest. Residuals of `problem` in units of their sigma. Empty if every parameter is determined.
 [[nodiscard]] std::string undetermined(const Model& model, const NormalEquations& problem);
 
-/// The same where `problem` carries the very wide priors of regularised_priors(): only those that the model states count.
-[[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem);
+/// The same where `problem` carries the very wide priors of regularised_priors(): only those that the model states count. `sigma2`: the
+/// variance of one of its residuals.
+[[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem, double sigma2);
 
 /// Weakly determined directions, as warnings: parameters, and curves as a whole (their scale), that compensate each other — smallest
 /// eigenvalues below 0.02 of their correlation matrix (a pair: |correlation| above 0.98) where one of them is known to no better than 5 % —

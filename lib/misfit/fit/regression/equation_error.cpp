@@ -276,7 +276,7 @@ double describe_estimates(const Regressor& regressor, const Regression& regressi
   return degrees;
 }
 
-void add_remarks(const Regressor& regressor, const NormalEquations& sums, FittedModel& out) {
+void add_remarks(const Regressor& regressor, const NormalEquations& sums, double sigma2, FittedModel& out) {
   const ReconstructedStates& states = regressor.states().front();
   const Signals& first = regressor.experiments().front();
   const InputTable inputs = input_table(first, out.model);
@@ -287,7 +287,7 @@ void add_remarks(const Regressor& regressor, const NormalEquations& sums, Fitted
         "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
         "by more than their sigmas; methods that run the model are not");
   }
-  if (const std::string which = undetermined_beside_priors(out.model, sums); !which.empty()) out.fit.warnings.push_back(which);
+  if (const std::string which = undetermined_beside_priors(out.model, sums, sigma2); !which.empty()) out.fit.warnings.push_back(which);
   warn_of_collinearity(out.model, out.fit.covariance, out.fit);
   warn_of_other_trims(out.fit);
   reject_prior_conflicts(out.model, out.fit.covariance, out.fit);
@@ -302,7 +302,7 @@ void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, Fitt
     rows.r *= weight;
   }
   const double degrees = describe_estimates(regressor, regression, smoothed, out);
-  add_remarks(regressor, regression.sums, out);
+  add_remarks(regressor, regression.sums, smoothed.sigma2, out);
   if (degrees < kFewestDegrees) {
     withhold_sigmas(format_value(regression.sums.count) + " usable samples for " + format_value(std::round(10.0 * smoothed.edf) / 10.0) +
                         " unknowns are too few to estimate the uncertainty of the values: no sigma is given",
