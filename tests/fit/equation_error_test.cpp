@@ -54,6 +54,15 @@ TEST(EquationError, AtABoundTheOthersTakeTheirConditionalValues) {
   EXPECT_THAT(at_bound.warnings, testing::Contains(HasSubstr("a ends at its bound, 0.5")));
 }
 
+/// An input that steps every ten samples leaves nowhere the twenty residuals that are averaged.
+TEST(EquationError, WhetherAForceDrivesItIsNotSaidWhereItCannotBeTested) {
+  const Fit fit = regressed("value = 0.1, bounds = [-5.0, 5.0], free = true", record(600, 10));
+  EXPECT_THAT(fit.facts.at("whiteness"), HasSubstr("not tested for a force"));
+  EXPECT_FALSE(fit.driven);
+  EXPECT_FALSE(fit.says_driven().has_value());
+  EXPECT_TRUE(regressed("value = 0.1, bounds = [-5.0, 5.0], free = true", record(600, 40)).says_driven().has_value());
+}
+
 /// The state's kinks are no place for a local polynomial.
 TEST(EquationError, TakesNoDerivativeAcrossAStepOfAHeldInput) {
   const std::string free = "value = 0.1, bounds = [-5.0, 5.0], free = true";

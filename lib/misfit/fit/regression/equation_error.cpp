@@ -295,6 +295,7 @@ void add_remarks(const Regressor& regressor, const NormalEquations& sums, double
 
 void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, FittedModel& out) {
   Regression regression = regressor.linearise(out.model, true);
+  out.fit.driven_untested = !test.tested();
   regression.sums.prior = very_wide_beside(regression.sums, out.model, out.penalties);
   const double weight = 1.0 / std::sqrt(smoothed.sigma2);
   for (ResidualRows& rows : regression.rows) {

@@ -238,9 +238,15 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
     fit.warnings.push_back(telescopes + ". The equation explains most of the acceleration (" + fit.facts["whiteness"] +
                            "): the bins are used");
   } else {
-    mark_not_informative(form.model, name, "the equation leaves most of the acceleration unexplained", fit);
-    fit.warnings.push_back(name + " of this method is not informative: " + telescopes +
-                           ", and the equation does not explain the acceleration (" + fit.facts["whiteness"] + ")");
+    const bool tested = pass.test.tested();
+    mark_not_informative(form.model, name,
+                         tested ? "the equation leaves most of the acceleration unexplained"
+                                : "it is not known whether the equation explains the acceleration",
+                         fit);
+    fit.warnings.push_back(
+        name + " of this method is not informative: " + telescopes + ", and " +
+        (tested ? "the equation does not explain the acceleration (" : "it is not known whether the equation explains the acceleration (") +
+        fit.facts["whiteness"] + ")");
   }
 }
 
@@ -301,6 +307,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
     std::string names;
     for (const auto& name : form->taken_as_known) names += (names.empty() ? "" : ", ") + name;
     fit.warnings.push_back("taken as known at their present values: " + names);
+  fit.driven_untested = !options.driven && !pass.test.tested();
   }
   fit.seconds = clock.seconds();
   return fit;
