@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -93,6 +94,13 @@ class Regressor {
   const std::vector<int>& rows() const { return rows_; }
   const std::vector<Signals>& experiments() const { return experiments_; }
   const std::vector<ReconstructedStates>& states() const { return states_; }
+  /// The first experiment whose states are known at some sample; nullopt if there is none.
+  std::optional<std::size_t> first_known() const {
+    for (std::size_t e = 0; e < states_.size(); ++e) {
+      if (std::find(states_[e].ok.begin(), states_[e].ok.end(), true) != states_[e].ok.end()) return e;
+    }
+    return std::nullopt;
+  }
   bool smoothed_at_steps() const {
     return std::any_of(usable_.begin(), usable_.end(), [](const UsableSamples& u) { return u.smoothed; });
   }
@@ -230,17 +238,18 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
   return a;
 }
 
-/// Is the motion driven? From the residuals of the first equation of motion of the first experiment, beside the acceleration and what
-/// further noise of the measured size adds to them.
+/// Is the motion driven? From the residuals of the first equation of motion of the first experiment whose states are known, beside the
+/// acceleration and what further noise of the measured size adds to them.
 DrivenTest test_first_equation(const Regressor& regressor, const Regression& regression, const Model& model) {
-  const Signals& signals = regressor.experiments().front();
-  const ReconstructedStates& states = regressor.states().front();
+  const std::size_t e = regressor.first_known().value_or(0);
+  const Signals& signals = regressor.experiments()[e];
+  const ReconstructedStates& states = regressor.states()[e];
   const int row = regressor.rows().front();
   const double frequency = motion_frequency(model, states);
   constexpr int usual_lags = 20, beyond_stencil = 5;
   const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : usual_lags;
   const std::vector<double> acceleration = derivative(states, row);
-  const std::vector<double>& residual = regression.residuals.front();
+  const std::vector<double>& residual = regression.residuals[e * regressor.rows().size()];
   const auto of_noise = [&] {
     const std::vector<Signals> noisier{with_more_noise(model.system->spec(), signals)};
     return difference(Regressor(model, noisier).linearise(model).residuals.front(), residual);
@@ -277,11 +286,13 @@ double describe_estimates(const Regressor& regressor, const Regression& regressi
 }
 
 void add_remarks(const Regressor& regressor, const NormalEquations& sums, double sigma2, FittedModel& out) {
-  const ReconstructedStates& states = regressor.states().front();
-  const Signals& first = regressor.experiments().front();
-  const InputTable inputs = input_table(first, out.model);
-  const std::size_t known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
-  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(known), first.t[known]);
+  if (const std::optional<std::size_t> e = regressor.first_known()) {
+    const ReconstructedStates& states = regressor.states()[*e];
+    const Signals& first = regressor.experiments()[*e];
+    const InputTable inputs = input_table(first, out.model);
+    const std::size_t known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+    out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(known), first.t[known]);
+  }
   if (regressor.smoothed_at_steps()) {
     out.fit.warnings.emplace_back(
         "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
