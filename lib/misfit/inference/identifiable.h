@@ -31,9 +31,9 @@ namespace misfit {
 void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 /// A converged fit in which a parameter ends more than two of its prior's sigmas from the prior's mean, while its own sigma is above half
-/// of the prior's, is marked as failed, with the reason: data that agree with the prior move a parameter so far only if they determine it
-/// better than the prior does. The cause is the roughness penalty, which is smaller for smaller curves, where a parameter compensates the
-/// scale of a curve.
+/// of the prior's: data that agree with the prior move a parameter so far only if they determine it better than the prior does. In a model
+/// with a free curve that has a roughness it is marked as failed, with the reason: the penalty is smaller for smaller curves, where a
+/// parameter compensates the scale of a curve. In another one prior and data disagree, as a warning.
 void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 }  // namespace misfit
