@@ -54,6 +54,14 @@ TEST(EquationError, AtABoundTheOthersTakeTheirConditionalValues) {
   EXPECT_THAT(at_bound.warnings, testing::Contains(HasSubstr("a ends at its bound, 0.5")));
 }
 
+/// What a parameter explains beyond its bound is not explained by the estimate.
+TEST(EquationError, AtABoundTheResidualsAreThoseOfTheEstimate) {
+  const Signals signals = record(600, 40);
+  const Fit at_bound = regressed("value = 0.2, bounds = [0.0, 0.5], free = true", signals), held = regressed("value = 0.5", signals);
+  const double expected = held.noise.at("equation_residual").value;
+  EXPECT_NEAR(at_bound.noise.at("equation_residual").value, expected, 1e-3 * expected);
+}
+
 /// The states of the first of two experiments are not known at any sample: what is said is of the second.
 TEST(EquationError, AFirstExperimentThatShowsNothingIsPassedOver) {
   const auto known = registry_with(duffing_text);

@@ -227,6 +227,40 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
   return smoothed.ok;
 }
 
+/// Columns of the parameters that end at a bound.
+std::vector<Eigen::Index> at_bounds(const Model& model) {
+  std::vector<Eigen::Index> out;
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[free[c]];
+    if (p.curve < 0 && (p.value == p.lower || p.value == p.upper)) out.push_back(static_cast<Eigen::Index>(c));
+  }
+  return out;
+}
+
+/// Where bounds hold parameters, `smoothed` is the maximum without them, whose residuals are smaller than those of the estimate: the
+/// variance is taken from the estimate's own, with the effective parameters of those that no bound holds.
+void take_variance_inside_bounds(const Regressor& regressor, const FittedModel& out, PenalisedFit& smoothed) {
+  const std::vector<Eigen::Index> held = at_bounds(out.model);
+  if (held.empty()) return;
+  NormalEquations here = regressor.linearise(out.model).sums;
+  here.prior = very_wide_beside(here, out.model, out.penalties);
+  NormalEquations others = here;
+  for (const Eigen::Index c : held) {
+    others.N.row(c).setZero();
+    others.N.col(c).setZero();
+    others.g[c] = 0.0;
+  }
+  std::vector<Penalty> penalties = with_weights_held(out.penalties);
+  const PenalisedFit of_others = estimate_smoothing(others, penalties);
+  if (!of_others.ok) return;
+  const double sigma2 = std::max(here.rss / std::max(here.count - of_others.edf, 1.0), 1e-300);
+  const PenalisedFit inside = estimate_smoothing(here, penalties, sigma2);
+  if (!inside.ok) return;
+  smoothed = inside;
+  smoothed.edf = of_others.edf;
+}
+
 std::vector<double> derivative(const ReconstructedStates& states, int state) {
   std::vector<double> out;
   for (Eigen::Index i = 0; i < states.dx.rows(); ++i) out.push_back(states.dx(i, state));
@@ -342,6 +376,7 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   }
   PenalisedFit smoothed;
   if (!solve(regressor, out, smoothed)) return out;
+  take_variance_inside_bounds(regressor, out, smoothed);
   test_residuals(regressor, smoothed.sigma2, out);
   describe_all(regressor, smoothed, out);
   if (out.fit.driven) {
