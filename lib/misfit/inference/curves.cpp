@@ -159,6 +159,7 @@ RowMatrix visited_quantities(const Model& model, const std::vector<Signals>& exp
 std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve) {
   constexpr double samples_per_interval = 30.0;
   constexpr double tail = 0.001;
+  std::erase_if(visited, [](double value) { return !std::isfinite(value); });
   std::sort(visited.begin(), visited.end());
   if (static_cast<double>(visited.size()) < 2.0 * samples_per_interval) {
     throw RunError("curve " + curve + ": only " + std::to_string(visited.size()) +

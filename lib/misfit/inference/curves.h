@@ -17,8 +17,8 @@ namespace misfit {
 [[nodiscard]] RowMatrix visited_quantities(const Model& model, const std::vector<Signals>& experiments,
                                            const std::vector<ReconstructedStates>& states);
 
-/// Equally spaced breakpoints over the visited range of a quantity (0.1 % to 99.9 % of the samples), `intervals` of them, fewer where the
-/// range holds too few samples (at least 30 per interval on average); the first is kept above 0 for odd and even curves. RunError if
+/// Equally spaced breakpoints over the visited range of a quantity (0.1 % to 99.9 % of its finite values), `intervals` of them, fewer where
+/// the range holds too few samples (at least 30 per interval on average); the first is kept above 0 for odd and even curves. RunError if
 /// nothing is visited.
 [[nodiscard]] std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve);
 
