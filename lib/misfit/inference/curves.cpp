@@ -20,7 +20,7 @@ struct Weights {
 
 std::vector<double> grid_over(double lowest, double highest, const std::string& unit) {
   const double range = highest - lowest;
-  const double step = (unit == "rad" || unit == "radian") && range < 2.0 ? 0.1 * kDegree : range / 200.0;
+  const double step = (unit == "rad" || unit == "radian") && range < 2.0 ? std::min(0.1 * kDegree, range / 20.0) : range / 200.0;
   const double margin = 0.1 * range;  // a little outside, drawn dashed with the widening band
   std::vector<double> x;
   double first = std::ceil((lowest - margin) / step) * step;

@@ -26,8 +26,8 @@ namespace misfit {
 void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals);
 
 /// Estimates for the report from free parameters with joint covariance: parameters by name, curves and derived curves with bands on a grid
-/// of 0.1 deg (angles) or 1/200 of the range, visit counts, and the trim (stable zero of the system's static curve) with sigma. `visited`
-/// gives the counts.
+/// of 0.1 deg (angles; 1/20 of a range below 2 deg) or 1/200 of the range, visit counts, and the trim (stable zero of the system's static
+/// curve) with sigma. `visited` gives the counts.
 void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit);
 
 /// Fit::roughness: each of the paths as the curves that hang on it, at about 40 of the places of describe().
