@@ -334,8 +334,7 @@ ColouredCovariance residual_covariance(const std::vector<ResidualRows>& experime
 
 std::string in_words(const ColouredCovariance& covariance) {
   if (covariance.lags == 0 && std::isinf(covariance.degrees))
-    return "no autocorrelation of the residuals is significant in this short record: sigmas are those of white residuals, 95 % intervals "
-           "by Student's t";
+    return "no autocorrelation of the residuals is significant in this short record: sigmas are those of white residuals";
   return "allows for autocorrelated residuals (Morelli and Klein): correlations up to lag " + std::to_string(covariance.lags) +
          " samples count, the largest is " + format_value(std::round(1000.0 * covariance.largest_correlation) / 1000.0) + " at lag " +
          std::to_string(covariance.largest_lag) + "; plain_sigma is that of white residuals";

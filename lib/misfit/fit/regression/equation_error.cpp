@@ -295,6 +295,7 @@ void test_residuals(const Regressor& regressor, double sigma2, FittedModel& out)
   const Regression regression = regressor.linearise(out.model);
   const DrivenTest test = test_first_equation(regressor, regression, out.model);
   out.fit.driven = test.driven();
+  out.fit.driven_untested = !test.tested();
   out.fit.facts["whiteness"] = "equation " + in_words(test);
   const std::string unit = rate_unit(out.model.system->spec().states[regressor.rows().front()].unit);
   out.fit.noise["equation_residual"] = {std::sqrt(sigma2), 0.0, unit};
@@ -314,8 +315,8 @@ double describe_estimates(const Regressor& regressor, const Regression& regressi
   describe(out.model, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess), visited, out.fit);
   describe_roughness(out.model, roughness_paths(regression.sums, out.penalties, smoothed.sigma2), out.fit);
   describe_freedom(out.model, regression.sums, out.penalties, smoothed.sigma2, out.fit);
-  if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
+  if (degrees >= kFewestDegrees && degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   return degrees;
 }
 
@@ -340,7 +341,6 @@ void add_remarks(const Regressor& regressor, const NormalEquations& sums, double
 
 void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, FittedModel& out) {
   Regression regression = regressor.linearise(out.model, true);
-  out.fit.driven_untested = !test.tested();
   regression.sums.prior = very_wide_beside(regression.sums, out.model, out.penalties);
   const double weight = 1.0 / std::sqrt(smoothed.sigma2);
   for (ResidualRows& rows : regression.rows) {
