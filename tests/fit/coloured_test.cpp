@@ -233,5 +233,19 @@ TEST(ColouredCovariance, IsPositiveForHardlyAnySamples) {
   }
 }
 
+/// Samples held out are no measurements.
+TEST(ColouredCovariance, ItsDegreesOfFreedomAreOfTheResidualsThatCount) {
+  constexpr Eigen::Index n = 300;
+  std::mt19937_64 random(2);
+  const Regression whole = solved(waves(n), first_order(random, n, 0.6), Eigen::MatrixXd::Zero(4, 4));
+  ResidualRows with_more = whole.rows;
+  with_more.J.conservativeResize(10 * n, Eigen::NoChange);
+  with_more.J.bottomRows(9 * n).setZero();
+  with_more.r.conservativeResize(10 * n);
+  with_more.r.tail(9 * n).setConstant(std::nan(""));
+  const double degrees = coloured_covariance({whole.rows}, whole.plain, 1).degrees;
+  EXPECT_NEAR(coloured_covariance({with_more}, whole.plain, 1).degrees, degrees, 1e-9 * degrees);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -147,5 +147,20 @@ TEST(DrivenTest, NoiseIsAddedOnceMoreToWhatWasMeasured) {
   EXPECT_NEAR(std::sqrt(squares / 20'000.0), sigma, 0.03 * sigma);
 }
 
+/// A residual is missing at least once in every half period: there is no average.
+TEST(DrivenTest, OfResidualsWithAGapInEveryHalfPeriodSaysNothing) {
+  constexpr std::size_t samples = 400;
+  constexpr int half_period = 20;
+  const std::vector<double> t = even_times(samples, 0.1);
+  std::vector<double> residual = waves(samples, 3.0, 100.0);
+  for (std::size_t i = 0; i < samples; i += 15) residual[i] = std::nan("");
+  const DrivenTest test =
+      test_driven({t, residual, waves(samples, 6.0, 100.0), [&] { return waves(samples, 0.5, 100.0); }, half_period, 5});
+  EXPECT_FALSE(test.tested());
+  EXPECT_FALSE(test.driven());
+  EXPECT_FALSE(test.deterministic());
+  EXPECT_NE(in_words(test).find("not tested for a force: nowhere are 20 of them"), std::string::npos) << in_words(test);
+}
+
 }  // namespace
 }  // namespace misfit

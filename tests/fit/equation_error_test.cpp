@@ -54,6 +54,45 @@ TEST(EquationError, AtABoundTheOthersTakeTheirConditionalValues) {
   EXPECT_THAT(at_bound.warnings, testing::Contains(HasSubstr("a ends at its bound, 0.5")));
 }
 
+/// What a parameter explains beyond its bound is not explained by the estimate.
+TEST(EquationError, AtABoundTheResidualsAreThoseOfTheEstimate) {
+  const Signals signals = record(600, 40);
+  const Fit at_bound = regressed("value = 0.2, bounds = [0.0, 0.5], free = true", signals), held = regressed("value = 0.5", signals);
+  const double expected = held.noise.at("equation_residual").value;
+  EXPECT_NEAR(at_bound.noise.at("equation_residual").value, expected, 1e-3 * expected);
+}
+
+/// The states of the first of two experiments are not known at any sample: what is said is of the second.
+TEST(EquationError, AFirstExperimentThatShowsNothingIsPassedOver) {
+  const auto known = registry_with(duffing_text);
+  const Model model = assemble(request_of("text"), *known);
+  Signals swing;
+  swing.name = "swing";
+  swing.measured = {{"y", "V", {}, 0.0}};
+  swing.inputs = {{"u", "V", {}, 0.0}};
+  for (int i = 0; i < 400; ++i) {
+    swing.t.push_back(0.02 * i);
+    swing.measured[0].values.push_back(0.1 * std::exp(-0.2 * swing.t.back()) * std::cos(5.5 * swing.t.back()));
+    swing.inputs[0].values.push_back(0.0);
+  }
+  Signals nothing = swing;
+  nothing.name = "nothing";
+  nothing.measured[0].values.assign(swing.samples(), std::nan(""));
+  const Fit both = equation_error(model, {nothing, swing}).fit, one = equation_error(model, {swing}).fit;
+  ASSERT_EQ(both.status, FitStatus::converged) << both.message;
+  EXPECT_EQ(both.facts.at("whiteness"), one.facts.at("whiteness"));
+  EXPECT_EQ(both.warnings, one.warnings);
+}
+
+/// An input that steps every ten samples leaves nowhere the twenty residuals that are averaged.
+TEST(EquationError, WhetherAForceDrivesItIsNotSaidWhereItCannotBeTested) {
+  const Fit fit = regressed("value = 0.1, bounds = [-5.0, 5.0], free = true", record(600, 10));
+  EXPECT_THAT(fit.facts.at("whiteness"), HasSubstr("not tested for a force"));
+  EXPECT_FALSE(fit.driven);
+  EXPECT_FALSE(fit.says_driven().has_value());
+  EXPECT_TRUE(regressed("value = 0.1, bounds = [-5.0, 5.0], free = true", record(600, 40)).says_driven().has_value());
+}
+
 /// The state's kinks are no place for a local polynomial.
 TEST(EquationError, TakesNoDerivativeAcrossAStepOfAHeldInput) {
   const std::string free = "value = 0.1, bounds = [-5.0, 5.0], free = true";

@@ -60,5 +60,22 @@ TEST(InfluenceOnAColumn, GapsAndShortRecordsSayNothingWrong) {
   EXPECT_FALSE(influence_on(r.other, {}).matters());
 }
 
+TEST(InfluenceOnAColumn, ALargeLevelChangesNothing) {
+  const Records r = records();
+  Records high = r;
+  for (auto* column : {&high.command, &high.follower}) {
+    for (double& v : *column) v += 1e9;
+  }
+  const Influence low_level = influence_on(r.follower, {r.command}), high_level = influence_on(high.follower, {high.command});
+  EXPECT_NEAR(high_level.own, low_level.own, 1e-3);
+  EXPECT_NEAR(high_level.others, low_level.others, 1e-3);
+}
+
+TEST(InfluenceOnAColumn, AConstantColumnDoesNotCount) {
+  const Records r = records();
+  const std::vector<double> constant(r.command.size(), 0.1);
+  EXPECT_EQ(influence_on(r.follower, {r.command, constant}, {constant}).others, influence_on(r.follower, {r.command}).others);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -211,5 +211,20 @@ TEST(LinearGuess, SaysWhereThereIsNone) {
   EXPECT_NE(guess.why.find("no linear model"), std::string::npos);
 }
 
+/// The mean of many equal values is rounded: they differ from it in the last digit.
+TEST(LinearGuess, AConstantDriverHasNoGain) {
+  GuessData beside = first_order(0.5, 0.01), alone = beside;
+  beside.drivers.push_back({std::vector<double>(beside.t.size(), 0.1), true, false});
+  const LinearGuess guess = guess_linear(beside), without = guess_linear(alone);
+  ASSERT_EQ(guess.gain.size(), 2U);
+  EXPECT_EQ(guess.gain[1], 0.0);
+  EXPECT_EQ(guess.gain[0], without.gain[0]);
+  EXPECT_EQ(guess.rest, without.rest);
+  alone.drivers = {beside.drivers.back()};
+  const LinearGuess of_nothing = guess_linear(alone);
+  EXPECT_EQ(of_nothing.gain[0], 0.0);
+  EXPECT_LT(std::abs(of_nothing.rest), 10.0);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -238,5 +238,22 @@ TEST(UncertainRoughness, OfAStiffCurveIsThatOfALineInItsPlace) {
   EXPECT_LT(found, 2.0 * s.expected()) << "some bends cannot be excluded, but nothing is lost in rounding";
 }
 
+/// The same Gaussian, written down at its maximum and beside it, where a bound has left the estimate.
+TEST(UncertainRoughness, HowFarABoundHoldsTheEstimateFromTheMaximumIsNoUncertainty) {
+  const CurveMeasurements r = measurements();
+  Eigen::VectorXd y(r.A.rows());
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = 4.0 * std::sin(0.05 * static_cast<double>(i)) + (i % 2 == 0 ? 1.0 : -1.0);
+  const NormalEquations problem = problem_of(r, y);
+  std::vector<Penalty> penalties{penalty_of(r, 1.0, true)};
+  const PenalisedFit smoothed = estimate_smoothing(problem, penalties, 1.0);
+  const NormalEquations at = at_maximum(problem, smoothed);
+  NormalEquations beside = at;
+  const Eigen::VectorXd away = Eigen::VectorXd::Constant(at.theta.size(), 0.5);
+  beside.theta += away;
+  beside.g += at.N * away;
+  const Eigen::MatrixXd expected = with_uncertain_roughness(at, penalties, 1.0);
+  EXPECT_LT((with_uncertain_roughness(beside, penalties, 1.0) - expected).norm(), 1e-6 * expected.norm());
+}
+
 }  // namespace
 }  // namespace misfit

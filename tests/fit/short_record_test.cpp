@@ -141,5 +141,16 @@ TEST(ShortRecords, MemoryWidensWhereItIsSeenAndNeverNarrows) {
   EXPECT_GE(wider, 90) << "the true variance is nine times as large";
 }
 
+TEST(ShortRecords, IntervalsAreSaidToBeStudentsWhereTheyAreGiven) {
+  const ColouredCovariance white = white_covariance(Eigen::MatrixXd::Identity(1, 1), 1);
+  EXPECT_THAT(in_words(white), testing::Not(testing::HasSubstr("Student")));
+  Fit fit = with_one_parameter();
+  fit.facts["covariance"] = in_words(white);
+  add_student_intervals(0.5, fit);
+  EXPECT_EQ(fit.facts.at("covariance"), in_words(white)) << "none are given";
+  add_student_intervals(10.0, fit);
+  EXPECT_THAT(fit.facts.at("covariance"), testing::EndsWith("white residuals; 95 % intervals are by Student's t"));
+}
+
 }  // namespace
 }  // namespace misfit

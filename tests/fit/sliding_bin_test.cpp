@@ -252,5 +252,29 @@ TEST(SlidingBin, TakesTheDampingAsANumberAsWell) {
   EXPECT_THAT(number.curves[1].value, testing::Pointwise(testing::DoubleNear(1e-10), curve.curves[1].value));
 }
 
+/// 40 rad/s about 12 deg, a little noise.
+Signals fast_swing(std::size_t samples) {
+  const auto t = even_times(samples, 0.001);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<double> level;
+  for (const double at : t) level.push_back((12.0 + 4.0 * std::sin(40.0 * at) + 0.001 * normal(random)) * degree);
+  return measured(t, level);
+}
+
+TEST(SlidingBin, TheTelescopedSumOfARecordBelowASecondHasTheScatterOfItsPeriods) {
+  const Fit fit = sliding_bin(assemble(eq_8(), registry()), fast_swing(900));
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  EXPECT_THAT(fit.facts.at("telescoped_sum"), HasSubstr("within 2 sigma of 0"));
+}
+
+TEST(SlidingBin, TheTelescopedSumOfLessThanTwoPeriodsIsNotDistinguishedFromZero) {
+  SlidingBinOptions options;
+  options.minimum_samples = 6;
+  const Fit fit = sliding_bin(assemble(eq_8(), registry()), fast_swing(150), options);
+  ASSERT_EQ(fit.status, FitStatus::converged) << fit.message;
+  EXPECT_THAT(fit.facts.at("telescoped_sum"), HasSubstr("not to be distinguished from 0"));
+}
+
 }  // namespace
 }  // namespace misfit

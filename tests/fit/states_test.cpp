@@ -131,5 +131,19 @@ TEST(MotionFrequency, OfAChannelThatStandsStillIsZero) {
   EXPECT_EQ(motion_frequency(model, reconstruct_states(model, measured(t, std::vector<double>(t.size(), 0.0)))), 0.0);
 }
 
+TEST(MotionFrequency, OfASwingAboutALargeLevelIsThatOfTheSwing) {
+  const Model model = assemble(eq_8(), registry());
+  constexpr double omega = 3.0, level = 1e9;
+  ReconstructedStates s;
+  s.x = RowMatrix(1000, 2);
+  s.ok.assign(1000, true);
+  s.shown = {true, true};
+  for (Eigen::Index i = 0; i < 1000; ++i) {
+    const double phase = 0.02 * 3.14159265358979323846 * static_cast<double>(i);
+    s.x.row(i) << level + 10.0 * std::sin(phase), 10.0 * omega * std::cos(phase);
+  }
+  EXPECT_NEAR(motion_frequency(model, s), omega, 1e-3);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -11,6 +11,7 @@
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
 #include "tests/fit/planar_model.h"
+#include "tests/fit/room.h"
 
 namespace misfit {
 namespace {
@@ -120,6 +121,36 @@ TEST(WeakDirections, AParameterThatLeftItsPriorThoughTheDataTellLessOfItIsNoSucc
   well_told.status = FitStatus::converged;
   reject_prior_conflicts(model, 0.01 * separate(model), well_told);
   EXPECT_EQ(well_told.status, FitStatus::converged);
+}
+
+/// A coefficient is no constant of [geometry].
+TEST(WeakDirections, ACoefficientThatLeftItsPriorIsToBeFixedAmongTheParameters) {
+  ModelRequest request = testing_planar::eq_8();
+  request.effects.push_back(EffectRequest{"viscous_friction", "viscous_friction", {}, {}});
+  request.parameters["viscosity"].value = 2.4;
+  request.parameters["viscosity"].sigma = 1.0;
+  Model model = assemble(request, testing_planar::registry());
+  model.parameters[static_cast<std::size_t>(model.find_parameter("viscosity"))].prior_mean = 0.0;
+  Fit fit;
+  fit.status = FitStatus::converged;
+  const auto n = static_cast<Eigen::Index>(model.free_parameters().size());
+  reject_prior_conflicts(model, Eigen::MatrixXd::Identity(n, n), fit);
+  EXPECT_EQ(fit.status, FitStatus::failed);
+  EXPECT_THAT(fit.message, testing::AllOf(HasSubstr("[parameters] viscosity = { free = false }"), testing::Not(HasSubstr("[geometry]"))));
+}
+
+TEST(WeakDirections, WithoutACurveAPriorThatTheDataContradictIsAWarning) {
+  const auto known = testing_room::registry_with(testing_room::warming("tau", "2e4"));
+  ModelRequest request = testing_room::request_of("text");
+  request.parameters["rest"].sigma = 1.0;
+  Model model = assemble(request, *known);
+  model.parameters[static_cast<std::size_t>(model.find_parameter("rest"))].prior_mean = 15.0 - 2.4;
+  Fit fit;
+  fit.status = FitStatus::converged;
+  reject_prior_conflicts(model, 0.64 * Eigen::Matrix2d::Identity(), fit);
+  EXPECT_EQ(fit.status, FitStatus::converged);
+  EXPECT_THAT(fit.warnings,
+              testing::ElementsAre(testing::AllOf(HasSubstr("these data and the prior of rest disagree"), HasSubstr("12.6"))));
 }
 
 TEST(WeakDirections, AParameterAtItsBoundIsNamedWithItsBound) {

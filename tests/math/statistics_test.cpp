@@ -76,5 +76,16 @@ TEST(StandardDeviation, IsThatOfTheFiniteValuesAboutTheirMean) {
   EXPECT_EQ(standard_deviation({}), 0.0);
 }
 
+TEST(StandardDeviation, OfSmallChangesOfALargeLevelIsThatOfTheChanges) {
+  EXPECT_NEAR(standard_deviation({1e9 + 1.0, 1e9 - 1.0, 1e9 + 1.0, 1e9 - 1.0}), 1.0, 1e-12);
+}
+
+TEST(MeanAndSigma, AConstantIsOneThoughItsMeanIsRounded) {
+  EXPECT_TRUE(mean_and_sigma(std::vector<double>(1001, 0.1)).constant());
+  EXPECT_TRUE(mean_and_sigma({missing}).constant());
+  EXPECT_FALSE(mean_and_sigma({1.0, 1.0 + 1e-9}).constant());
+  EXPECT_FALSE(mean_and_sigma({-1e-30, 1e-30}).constant()) << "a mean of 0 rounds nothing";
+}
+
 }  // namespace
 }  // namespace misfit

@@ -90,11 +90,14 @@ struct Fit {
   std::map<std::string, std::string> facts;  ///< further findings in words, for fit.json ("telescoped_sum": "…")
   bool driven = false;                       ///< the motion is driven by something the model does not have
   bool coloured = false;                     ///< the residuals are clearly not white, as a warning says
+  bool driven_untested = false;              ///< `driven` could not be tested: other methods judge for themselves; not in fit.json
   double seconds = 0.0;
   int linearisations = 0;
 
   /// Has it a result, be it that the iterations stopped before the maximum?
   [[nodiscard]] bool usable() const { return status == FitStatus::converged || status == FitStatus::not_converged; }
+  /// What it says of that to other methods; nullopt where it could not test it.
+  [[nodiscard]] std::optional<bool> says_driven() const { return driven_untested ? std::nullopt : std::optional(driven); }
 };
 
 /// Writes fit.json, curves.csv and one prediction.csv into `dir`; several experiments: prediction_NAME.csv beside; curves with a

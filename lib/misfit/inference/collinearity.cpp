@@ -6,6 +6,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/inference/identifiable.h"
+#include "misfit/inference/prior.h"
 #include "misfit/math/covariance.h"
 
 namespace misfit {
@@ -150,20 +151,36 @@ void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance,
   if (!prior_only.empty()) fit.facts["prior_only"] = "these data add no information to the prior of " + prior_only;
 }
 
+namespace {
+
+/// "Fix it and …": what keeps a parameter from compensating the scale of a curve.
+std::string how_to_hold(const Model& model, int parameter) {
+  const std::string& name = model.parameters[parameter].name;
+  if (parameter >= std::ssize(model.system->spec().constants)) return "Fix it ([parameters] " + name + " = { free = false })";
+  return "Fix it and give its sigma ([geometry] " + name + " = { value, sigma }), so that it is propagated instead of estimated";
+}
+
+}  // namespace
+
 void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
   constexpr double max_prior_sigmas = 2.0, max_share_of_prior = 0.5;
+  const std::vector<Penalty> penalties = curve_penalties(model);
+  const bool penalised = std::any_of(penalties.begin(), penalties.end(), [](const Penalty& p) { return p.lambda > 0.0; });
   const std::vector<int> free = model.free_parameters();
   for (std::size_t c = 0; c < free.size(); ++c) {
     const Parameter& p = model.parameters[free[c]];
     const double sigma = standard_error(covariance, static_cast<Eigen::Index>(c));
     if (p.curve >= 0 || !p.prior_sigma || fit.status != FitStatus::converged) continue;
     if (std::abs(p.value - p.prior_mean) < max_prior_sigmas * *p.prior_sigma || sigma < max_share_of_prior * *p.prior_sigma) continue;
+    const std::string here = in_display_unit(p.value, p.unit, sigma), prior = in_display_unit(p.prior_mean, p.unit, *p.prior_sigma);
+    if (!penalised) {
+      fit.warnings.push_back("these data and the prior of " + p.name + " disagree: it ends at " + here + ", its prior is " + prior);
+      continue;
+    }
     fit.status = FitStatus::failed;
-    fit.message = p.name + " has run to " + in_display_unit(p.value, p.unit, sigma) + ", away from its prior " +
-                  in_display_unit(p.prior_mean, p.unit, *p.prior_sigma) +
-                  ": it compensates the scale of a curve, and the roughness penalty is smaller for a smaller curve. Fix it and give its "
-                  "sigma ([geometry] " +
-                  p.name + " = { value, sigma }), so that it is propagated instead of estimated";
+    fit.message = p.name + " has run to " + here + ", away from its prior " + prior +
+                  ": it compensates the scale of a curve, and the roughness penalty is smaller for a smaller curve. " +
+                  how_to_hold(model, free[c]);
   }
 }
 

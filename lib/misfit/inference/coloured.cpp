@@ -33,11 +33,13 @@ class Sandwich {
  public:
   Sandwich(const std::vector<ResidualRows>& experiments, const Eigen::MatrixXd& plain, Eigen::Index channels)
       : plain_(plain), channels_(channels) {
-    Eigen::Index longest = 1, all = 0;
+    Eigen::Index longest = 1;
+    double count = 0.0;
     for (const auto& e : experiments) {
       longest = std::max(longest, e.r.size() / channels);
-      all += e.r.size() / channels;
+      count += static_cast<double>(e.r.array().isFinite().count());
     }
+    const double per_channel = count / static_cast<double>(channels);
     lags_ = std::min(max_lags, longest / 3);
     size_ = power_of_two(std::min(longest + lags_, longest_transform));
     products_.assign(lags_ + 1, Eigen::MatrixXd::Zero(channels, channels));
@@ -46,11 +48,11 @@ class Sandwich {
       const Eigen::Index samples = e.r.size() / channels, most = size_ - lags_;
       for (Eigen::Index first = 0; first < samples; first += most) accumulate(e, first, std::min(most, samples - first));
     }
-    const auto least = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(all))));
+    const auto least = static_cast<int>(std::ceil(std::cbrt(per_channel)));
     out_.lags = correlation_length(products_, pairs_, least);
     double squares = 1.0;
     for (int k = 1; k <= 2 * out_.lags; ++k) squares += 2.0 * std::pow(flat_top(k, out_.lags), 2);
-    out_.degrees = static_cast<double>(all) / squares;
+    out_.degrees = per_channel / squares;
   }
 
   ColouredCovariance run() {
@@ -332,8 +334,7 @@ ColouredCovariance residual_covariance(const std::vector<ResidualRows>& experime
 
 std::string in_words(const ColouredCovariance& covariance) {
   if (covariance.lags == 0 && std::isinf(covariance.degrees))
-    return "no autocorrelation of the residuals is significant in this short record: sigmas are those of white residuals, 95 % intervals "
-           "by Student's t";
+    return "no autocorrelation of the residuals is significant in this short record: sigmas are those of white residuals";
   return "allows for autocorrelated residuals (Morelli and Klein): correlations up to lag " + std::to_string(covariance.lags) +
          " samples count, the largest is " + format_value(std::round(1000.0 * covariance.largest_correlation) / 1000.0) + " at lag " +
          std::to_string(covariance.largest_lag) + "; plain_sigma is that of white residuals";

@@ -28,8 +28,8 @@ struct ColouredCovariance {
   int largest_lag = 0;  ///< of the largest correlation in size at lag ≥ 1
   /// Per channel Σ ρ² over all lags: the variance of a residual variance is 2 σ⁴/n times this (Bartlett). 1 for white residuals.
   Eigen::VectorXd squared_correlations;
-  /// Degrees of freedom of such a variance, n/Σ w² over the lags of both signs with window w: 2/degrees is about the variance of its
-  /// relative error. Infinite where the residuals were taken as white.
+  /// Degrees of freedom of such a variance, n/Σ w² over the lags of both signs with window w, n the residuals that count, per channel:
+  /// 2/degrees is about the variance of its relative error. Infinite where the residuals were taken as white.
   double degrees = std::numeric_limits<double>::infinity();
 };
 

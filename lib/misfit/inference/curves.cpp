@@ -20,7 +20,7 @@ struct Weights {
 
 std::vector<double> grid_over(double lowest, double highest, const std::string& unit) {
   const double range = highest - lowest;
-  const double step = (unit == "rad" || unit == "radian") && range < 2.0 ? 0.1 * kDegree : range / 200.0;
+  const double step = (unit == "rad" || unit == "radian") && range < 2.0 ? std::min(0.1 * kDegree, range / 20.0) : range / 200.0;
   const double margin = 0.1 * range;  // a little outside, drawn dashed with the widening band
   std::vector<double> x;
   double first = std::ceil((lowest - margin) / step) * step;
@@ -159,6 +159,7 @@ RowMatrix visited_quantities(const Model& model, const std::vector<Signals>& exp
 std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve) {
   constexpr double samples_per_interval = 30.0;
   constexpr double tail = 0.001;
+  std::erase_if(visited, [](double value) { return !std::isfinite(value); });
   std::sort(visited.begin(), visited.end());
   if (static_cast<double>(visited.size()) < 2.0 * samples_per_interval) {
     throw RunError("curve " + curve + ": only " + std::to_string(visited.size()) +

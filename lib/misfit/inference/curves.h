@@ -17,8 +17,8 @@ namespace misfit {
 [[nodiscard]] RowMatrix visited_quantities(const Model& model, const std::vector<Signals>& experiments,
                                            const std::vector<ReconstructedStates>& states);
 
-/// Equally spaced breakpoints over the visited range of a quantity (0.1 % to 99.9 % of the samples), `intervals` of them, fewer where the
-/// range holds too few samples (at least 30 per interval on average); the first is kept above 0 for odd and even curves. RunError if
+/// Equally spaced breakpoints over the visited range of a quantity (0.1 % to 99.9 % of its finite values), `intervals` of them, fewer where
+/// the range holds too few samples (at least 30 per interval on average); the first is kept above 0 for odd and even curves. RunError if
 /// nothing is visited.
 [[nodiscard]] std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve);
 
@@ -26,8 +26,8 @@ namespace misfit {
 void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals);
 
 /// Estimates for the report from free parameters with joint covariance: parameters by name, curves and derived curves with bands on a grid
-/// of 0.1 deg (angles) or 1/200 of the range, visit counts, and the trim (stable zero of the system's static curve) with sigma. `visited`
-/// gives the counts.
+/// of 0.1 deg (angles; 1/20 of a range below 2 deg) or 1/200 of the range, visit counts, and the trim (stable zero of the system's static
+/// curve) with sigma. `visited` gives the counts.
 void describe(const Model& model, const Eigen::MatrixXd& covariance, const RowMatrix& visited, Fit& fit);
 
 /// Fit::roughness: each of the paths as the curves that hang on it, at about 40 of the places of describe().

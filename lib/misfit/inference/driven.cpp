@@ -14,7 +14,7 @@ namespace misfit {
 namespace {
 
 /// Median size of the averages over `samples` neighbours, all known: single wild ones, as of a clock angle where the tilt vanishes, do not
-/// count.
+/// count. NaN where nowhere so many neighbours are known.
 double median_average(const std::vector<double>& values, std::size_t samples) {
   std::vector<double> sizes;
   double sum = 0.0;
@@ -28,7 +28,7 @@ double median_average(const std::vector<double>& values, std::size_t samples) {
     if (++known > samples) sum -= values[i - samples];
     if (known >= samples) sizes.push_back(std::abs(sum) / static_cast<double>(samples));
   }
-  return sizes.empty() ? 0.0 : median(std::move(sizes));
+  return median(std::move(sizes));
 }
 
 /// NaN where the other is.
@@ -41,9 +41,11 @@ std::vector<double> where_known(std::vector<double> values, const std::vector<do
 
 }  // namespace
 
+bool DrivenTest::tested() const { return !std::isnan(share) && !std::isnan(times_noise); }
+
 bool DrivenTest::driven() const {
   constexpr double above_noise = 4.0;
-  return times_noise > above_noise && !deterministic();
+  return tested() && times_noise > above_noise && !deterministic();
 }
 
 DrivenTest test_driven(const EquationResiduals& equation) {
@@ -56,14 +58,18 @@ DrivenTest test_driven(const EquationResiduals& equation) {
     return median_average(on_even_grid(equation.t, where_known(values, equation.residual)), test.averaged);
   };
   const double residual = average(equation.residual), acceleration = average(equation.acceleration);
-  test.share = acceleration > 0.0 ? residual / acceleration : 0.0;
-  if (test.deterministic()) return test;
+  test.share = acceleration == 0.0 ? 0.0 : residual / acceleration;
+  if (!test.tested() || test.deterministic()) return test;
   const double noise = average(equation.of_noise());
-  test.times_noise = noise > 0.0 ? residual / noise : std::numeric_limits<double>::infinity();
+  test.times_noise = noise == 0.0 ? std::numeric_limits<double>::infinity() : residual / noise;
   return test;
 }
 
 std::string in_words(const DrivenTest& test) {
+  if (!test.tested()) {
+    return fmt::format("residuals are not tested for a force: nowhere are {} of them, half a period, known without a gap; at {}",
+                       test.averaged, in_words(test.whiteness));
+  }
   const std::string noise = test.deterministic() ? "" : fmt::format(", {:.2g} times what measurement noise makes", test.times_noise);
   return fmt::format("residuals averaged over {} samples are {:.2g} of the averaged acceleration{}; at {}", test.averaged, test.share,
                      noise, in_words(test.whiteness));

@@ -27,12 +27,15 @@ struct EquationResiduals {
 struct DrivenTest {
   WhitenessTest whiteness;   ///< of the residuals, from the stencils' reach to half a period
   int averaged = 0;          ///< samples
-  double share = 0.0;        ///< median size of averaged residuals over that of averaged accelerations
-  double times_noise = 0.0;  ///< median size of averaged residuals over that of averaged noise; 0 where deterministic()
+  double share = 0.0;        ///< median size of averaged residuals over that of averaged accelerations; NaN where there is no average
+  double times_noise = 0.0;  ///< median size of averaged residuals over that of averaged noise; 0 where deterministic(); NaN as above
+  /// Half a period of residuals is known somewhere without a gap, so that there is something to average. Otherwise neither driven() nor
+  /// deterministic().
+  [[nodiscard]] bool tested() const;
   /// Averaged residuals are above four times what measurement noise makes and above a fifth of the averaged acceleration (what curves of
   /// few coefficients or bins smooth away is below).
   [[nodiscard]] bool driven() const;
-  /// They are at most a fifth of the averaged acceleration. Neither this nor driven(): noise hides the motion.
+  /// They are at most a fifth of the averaged acceleration. Neither this nor driven(), though tested(): noise hides the motion.
   [[nodiscard]] bool deterministic() const { return share <= kSmallShare; }
 
   static constexpr double kSmallShare = 0.2;
@@ -41,7 +44,7 @@ struct DrivenTest {
 [[nodiscard]] DrivenTest test_driven(const EquationResiduals& equation);
 
 /// "equation residuals averaged over 8 samples are 0.85 of the averaged acceleration and 14 times what measurement noise makes of it; at
-/// lags 5 to 15 …".
+/// lags 5 to 15 …"; "residuals are not tested for a force …" where not tested().
 [[nodiscard]] std::string in_words(const DrivenTest& test);
 
 /// The signals with one draw of white noise more on each channel, as large as it already has (measurement_noise()), from a fixed seed; on

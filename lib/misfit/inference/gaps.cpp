@@ -5,6 +5,7 @@
 
 #include "misfit/core/text.h"
 #include "misfit/inference/states.h"
+#include "misfit/math/statistics.h"
 #include "misfit/sim/step.h"
 #include "misfit/sim/trajectory.h"
 
@@ -36,20 +37,19 @@ double rate_of_data(const Model& model, const Signals& signals, const Reconstruc
   double fastest = 0.0;
   for (std::size_t o = 0; o < outputs.size() && o < signals.measured.size(); ++o) {
     if (outputs[o].observes < 0) continue;
-    double n = 0.0, sum = 0.0, squares = 0.0, slopes = 0.0;
+    std::vector<double> levels;
+    double slopes = 0.0;
     for (std::size_t i = 0; i < signals.samples(); ++i) {
       if (!states.ok[i]) continue;
-      const double x = states.x(i, outputs[o].observes);
-      n += 1.0;
-      sum += x;
-      squares += x * x;
+      levels.push_back(states.x(i, outputs[o].observes));
       slopes += std::pow(states.dx(i, outputs[o].observes), 2);
     }
     const double noise = measurement_noise(signals.measured[o].values);
     constexpr double slope_variance_factor = 0.1;  // sum of squares of the weights of five even samples
     const double share = std::isfinite(noise) ? slope_variance_factor * noise * noise / (step * step) : 0.0;
-    const double variance = n > 2.0 ? squares / n - sum * sum / (n * n) : 0.0;
-    if (variance > 0.0) fastest = std::max(fastest, std::sqrt(std::max(slopes / n - share, 0.0) / variance));
+    const MeanAndSigma level = mean_and_sigma(levels);
+    const auto n = static_cast<double>(levels.size());
+    if (n > 2.0 && !level.constant()) fastest = std::max(fastest, std::sqrt(std::max(slopes / n - share, 0.0)) / level.sigma);
   }
   return fastest;
 }

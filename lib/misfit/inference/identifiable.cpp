@@ -35,17 +35,17 @@ Eigen::VectorXd information_of(const NormalEquations& problem) {
   return out;
 }
 
-/// Schur complement of the initial states in N (scaled to unit diagonal), for these columns.
-Eigen::MatrixXd reduced(const NormalEquations& problem, const std::vector<Column>& columns, Eigen::Index free) {
+/// Schur complement of the initial states in N with the priors, scaled to unit diagonal, for these columns. `scale`: 1/√information.
+Eigen::MatrixXd reduced(const NormalEquations& problem, const Eigen::VectorXd& scale, const std::vector<Column>& columns,
+                        Eigen::Index free) {
   const auto n = std::ssize(columns);
   const Eigen::Index states = problem.N.rows() - free;
-  const Eigen::VectorXd scale = problem.N.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd all = scale.asDiagonal() * problem.N * scale.asDiagonal();
+  Eigen::MatrixXd all = problem.N;
+  all.diagonal() = information_of(problem);
+  all = scale.asDiagonal() * all * scale.asDiagonal();
   Eigen::MatrixXd N(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
-    const Eigen::Index row = columns[a].at;
-    for (Eigen::Index b = 0; b < n; ++b) N(a, b) = all(row, columns[b].at);
-    if (problem.prior.precision.size() > row) N(a, a) += problem.prior.precision[row] * scale[row] * scale[row];
+    for (Eigen::Index b = 0; b < n; ++b) N(a, b) = all(columns[a].at, columns[b].at);
   }
   if (states == 0) return N;
   Eigen::MatrixXd C(n, states);
@@ -82,12 +82,12 @@ std::string without_effect(const Model& model, const Eigen::VectorXd& informatio
 }
 
 std::string undetermined(const Model& model, const NormalEquations& problem) {
-  if (std::string idle = without_effect(model, information_of(problem)); !idle.empty()) return idle;
+  const Eigen::VectorXd information = information_of(problem);
+  if (std::string idle = without_effect(model, information); !idle.empty()) return idle;
   const std::vector<Column> columns = columns_of(model);
   if (columns.size() < 2) return {};
-  const Eigen::MatrixXd N = reduced(problem, columns, model.free_parameters().size());
-  Eigen::VectorXd size(N.rows());
-  for (Eigen::Index a = 0; a < N.rows(); ++a) size[a] = 1.0 / std::sqrt(problem.N(columns[a].at, columns[a].at));
+  const Eigen::VectorXd scale = information.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd N = reduced(problem, scale, columns, model.free_parameters().size());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);
   if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > singular_eigenvalue * solver.eigenvalues().maxCoeff()) return {};
   const Eigen::VectorXd direction = solver.eigenvectors().col(0);
@@ -98,7 +98,7 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
     if (std::abs(direction[a]) < min_share * direction.cwiseAbs().maxCoeff()) continue;
     const Parameter& p = *columns[a].parameter;
     names.push_back(p.name);
-    relative.push_back(direction[a] * size[a] / p.value);
+    relative.push_back(direction[a] * scale[columns[a].at] / p.value);
   }
   return in_words(names, relative);
 }
@@ -127,7 +127,8 @@ std::string undetermined_starts(const Model& model, const Eigen::MatrixXd& preci
          (of_effects ? "; leave out the effect that remembers it" : "; give it in [initial], fixed");
 }
 
-std::string undetermined_beside_priors(const Model& model, NormalEquations problem) {
+std::string undetermined_beside_priors(const Model& model, NormalEquations problem, double sigma2) {
+  problem.N /= sigma2;
   problem.prior = parameter_priors(model);
   return undetermined(model, problem);
 }

@@ -14,9 +14,9 @@ namespace misfit {
 [[nodiscard]] std::string without_effect(const Model& model, const Eigen::VectorXd& information);
 
 /// Which free parameters these data do not determine, as a sentence: a parameter that no residual depends on, or several of which only a
-/// combination acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N (columns scaled to unit
-/// diagonal, priors included, curves held by their roughness left out; further columns of N, initial states, are projected out) with
-/// eigenvalues below 1e-10 of the largest. Empty if every parameter is determined.
+/// combination acts — named as product or ratio where it is one. From the eigenvectors of the normal matrix N with the priors (scaled to
+/// unit diagonal; curves, held by their roughness, are left out; further columns of N, initial states, are projected out) with
+/// eigenvalues below 1e-10 of the largest. Residuals of `problem` in units of their sigma. Empty if every parameter is determined.
 [[nodiscard]] std::string undetermined(const Model& model, const NormalEquations& problem);
 
 /// Which initial states these data do not determine, as a sentence: those in the eigenvectors of `precision` (of the free parameters, then
@@ -24,8 +24,9 @@ namespace misfit {
 [[nodiscard]] std::string undetermined_starts(const Model& model, const Eigen::MatrixXd& precision,
                                               const std::vector<Signals>& experiments);
 
-/// The same as undetermined() where `problem` carries the very wide priors of regularised_priors(): only those that the model states count.
-[[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem);
+/// The same as undetermined() where `problem` carries the very wide priors of regularised_priors(): only those that the model states count. `sigma2`: the
+/// variance of one of its residuals.
+[[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem, double sigma2);
 
 /// Weakly determined directions, as warnings: parameters, and curves as a whole (their scale), that compensate each other — smallest
 /// eigenvalues below 0.02 of their correlation matrix (a pair: |correlation| above 0.98) where one of them is known to no better than 5 % —
@@ -36,9 +37,9 @@ namespace misfit {
 void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 /// A converged fit in which a parameter ends more than two of its prior's sigmas from the prior's mean, while its own sigma is above half
-/// of the prior's, is marked as failed, with the reason: data that agree with the prior move a parameter so far only if they determine it
-/// better than the prior does. The cause is the roughness penalty, which is smaller for smaller curves, where a parameter compensates the
-/// scale of a curve.
+/// of the prior's: data that agree with the prior move a parameter so far only if they determine it better than the prior does. In a model
+/// with a free curve that has a roughness it is marked as failed, with the reason: the penalty is smaller for smaller curves, where a
+/// parameter compensates the scale of a curve. In another one prior and data disagree, as a warning.
 void reject_prior_conflicts(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit);
 
 }  // namespace misfit

@@ -68,7 +68,7 @@ struct PenaltyBasis {
 
 /// Covariance of the unknowns when the λ marked `chosen` are not known but only as well as the data show them [KS]:
 ///   Σ_λ w(λ) [C(λ) + C(λ) E C(λ) + (θ(λ) − θ)(θ(λ) − θ)ᵀ],
-/// C(λ), θ(λ): covariance and maximum at that λ, θ: the problem's own, taken as its maximum, E: what residuals with memory add to N (empty:
+/// C(λ), θ(λ): covariance and maximum at that λ, θ: the maximum at the λ that are used, E: what residuals with memory add to N (empty:
 /// nothing). w: marginal likelihood of the linearised problem under a uniform prior of 1/sqrt(λ), the size of C'' [G], so that a curve that
 /// is a straight line to all that the data show keeps the band of the bends they cannot exclude. One λ at a time, in steps of sqrt(10), the
 /// others held; what each adds is summed. Without chosen λ: C + C E C.

@@ -15,6 +15,8 @@ void add_student_intervals(double degrees, Fit& fit) {
   };
   for (auto& [name, estimate] : fit.parameters) add(estimate);
   if (fit.trim) add(*fit.trim);
+  if (const auto covariance = fit.facts.find("covariance"); covariance != fit.facts.end())
+    covariance->second += "; 95 % intervals are by Student's t";
 }
 
 void withhold_sigmas(const std::string& why, Fit& fit) {

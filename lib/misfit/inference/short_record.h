@@ -14,6 +14,7 @@ inline constexpr double kFewestDegrees = 2.9;  // 3 but for rounding
 inline constexpr double kShortRecord = 500.0;
 
 /// 95 % intervals of parameters and trim (Estimate::interval) by Student's t of the degrees of freedom. A sigma stays the standard error.
+/// Where facts["covariance"] says what the sigmas are, it then says that of the intervals. None of fewer than one degree of freedom.
 void add_student_intervals(double degrees, Fit& fit);
 
 /// Takes away the sigmas of parameters, trim, noise and curves, and their covariance: not known. `why` goes into the warnings.

@@ -32,7 +32,7 @@ class AlongLambda {
     const Eigen::MatrixXd at_best = with_excess(best->covariance);
     Eigen::MatrixXd out = at_best;
     for (std::size_t k = 0; k < penalties_.size(); ++k) {
-      if (penalties_[k].chosen) out += integral_over(k) - at_best;
+      if (penalties_[k].chosen) out += integral_over(k, best->shift) - at_best;
     }
     return out;
   }
@@ -83,14 +83,16 @@ class AlongLambda {
     return points;
   }
 
-  [[nodiscard]] Eigen::MatrixXd integral_over(std::size_t k) const {
+  /// `shift`: that of the maximum at the λ that are used, which is not the problem's θ where a bound holds that.
+  [[nodiscard]] Eigen::MatrixXd integral_over(std::size_t k, const Eigen::VectorXd& shift) const {
     const std::vector<LambdaPoint> points = points_of(k);
     double highest = -1e300, sum = 0.0;
     for (const auto& point : points) highest = std::max(highest, point.log_weight());
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(problem_.N.rows(), problem_.N.cols());
     for (const auto& point : points) {
       const double weight = std::exp(point.log_weight() - highest);
-      out += weight * (with_excess(point.covariance) + point.shift * point.shift.transpose());
+      const Eigen::VectorXd moved = point.shift - shift;
+      out += weight * (with_excess(point.covariance) + moved * moved.transpose());
       sum += weight;
     }
     return out / sum;

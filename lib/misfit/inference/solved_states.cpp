@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "misfit/inference/states.h"
+#include "misfit/math/statistics.h"
 #include "misfit/model/limits.h"
 #include "misfit/sim/trajectory.h"
 
@@ -16,20 +17,12 @@ namespace {
 
 using States = std::array<double, kMaxStates>;
 
-double spread_of(const std::vector<double>& values) {
-  double sum = 0.0, squares = 0.0, n = 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
-  }
-  return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
-}
-
 class OutputSolver {
  public:
   OutputSolver(const Model& model, const Signals& signals, const std::vector<bool>& shown)
       : model_(model), spec_(model.system->spec()), signals_(signals), inputs_(input_table(signals, model)), constants_(model.values()) {
     for (std::size_t j = 0; j < spec_.states.size(); ++j) start_[j] = start_of(model.state_specs[j]);
-    for (const Signal& channel : signals.measured) weight_.push_back(1.0 / std::max(spread_of(channel.values), 1e-300));
+    for (const Signal& channel : signals.measured) weight_.push_back(1.0 / std::max(standard_deviation(channel.values), 1e-300));
     for (std::size_t j = 0; j < spec_.states.size(); ++j) {
       if (!shown[j] && depends_on(j)) unknown_.push_back(static_cast<int>(j));
     }

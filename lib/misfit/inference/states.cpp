@@ -195,16 +195,16 @@ double motion_frequency(const Model& model, const ReconstructedStates& states) {
   for (std::size_t j = 0; j < spec.states.size(); ++j) {
     const int level = spec.states[j].rate_of;
     if (level < 0 || !states.shown[j]) continue;
-    double n = 0.0, sum = 0.0, squares = 0.0, rates = 0.0;
+    std::vector<double> levels;
+    double rates = 0.0;
     for (Eigen::Index i = 0; i < states.x.rows(); ++i) {
       if (!states.ok[i]) continue;
-      n += 1.0;
-      sum += states.x(i, level);
-      squares += states.x(i, level) * states.x(i, level);
+      levels.push_back(states.x(i, level));
       rates += states.x(i, j) * states.x(i, j);
     }
-    const double variance = n > 2.0 ? squares / n - sum * sum / (n * n) : 0.0;
-    if (variance > 0.0) fastest = std::max(fastest, std::sqrt(rates / n / variance));
+    const MeanAndSigma spread = mean_and_sigma(levels);
+    const auto n = static_cast<double>(levels.size());
+    if (n > 2.0 && !spread.constant()) fastest = std::max(fastest, std::sqrt(rates / n) / spread.sigma);
   }
   return fastest;
 }

@@ -43,13 +43,25 @@ double resolution_of(std::vector<double> values) {
   return least;
 }
 
-double standard_deviation(const std::vector<double>& values) {
-  double sum = 0.0, squares = 0.0, n = 0.0;
-  for (double v : values) {
-    if (std::isfinite(v)) sum += v, squares += v * v, n += 1.0;
-  }
-  return n > 1.0 ? std::sqrt(std::max(squares / n - sum * sum / (n * n), 0.0)) : 0.0;
+bool MeanAndSigma::constant() const {
+  constexpr double rounding = 1e-12;
+  return !(sigma > rounding * std::abs(mean));
 }
+
+MeanAndSigma mean_and_sigma(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0, n = 0.0;
+  for (const double v : values) {
+    if (std::isfinite(v)) sum += v, n += 1.0;
+  }
+  if (n == 0.0) return {};
+  const double mean = sum / n;
+  for (const double v : values) {
+    if (std::isfinite(v)) squares += (v - mean) * (v - mean);
+  }
+  return {mean, std::sqrt(squares / n)};
+}
+
+double standard_deviation(const std::vector<double>& values) { return mean_and_sigma(values).sigma; }
 
 double usual_step(const std::vector<double>& t) {
   std::vector<double> steps;

@@ -14,6 +14,16 @@ namespace misfit {
 /// Usual step of a time base: the median difference [s]; 1 for fewer than two samples.
 [[nodiscard]] double usual_step(const std::vector<double>& t);
 
+/// Mean and standard deviation about it.
+struct MeanAndSigma {
+  double mean = 0.0, sigma = 0.0;
+  /// The values do not differ but for rounding: sigma is at most 1e-12 of the mean.
+  [[nodiscard]] bool constant() const;
+};
+
+/// Of the finite ones; 0 of none.
+[[nodiscard]] MeanAndSigma mean_and_sigma(const std::vector<double>& values);
+
 /// Of the finite ones, about their mean; 0 of fewer than two.
 [[nodiscard]] double standard_deviation(const std::vector<double>& values);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/text.h"
@@ -93,6 +94,13 @@ class Regressor {
   const std::vector<int>& rows() const { return rows_; }
   const std::vector<Signals>& experiments() const { return experiments_; }
   const std::vector<ReconstructedStates>& states() const { return states_; }
+  /// The first experiment whose states are known at some sample; nullopt if there is none.
+  std::optional<std::size_t> first_known() const {
+    for (std::size_t e = 0; e < states_.size(); ++e) {
+      if (std::find(states_[e].ok.begin(), states_[e].ok.end(), true) != states_[e].ok.end()) return e;
+    }
+    return std::nullopt;
+  }
   bool smoothed_at_steps() const {
     return std::any_of(usable_.begin(), usable_.end(), [](const UsableSamples& u) { return u.smoothed; });
   }
@@ -219,6 +227,40 @@ bool solve(const Regressor& regressor, FittedModel& out, PenalisedFit& smoothed)
   return smoothed.ok;
 }
 
+/// Columns of the parameters that end at a bound.
+std::vector<Eigen::Index> at_bounds(const Model& model) {
+  std::vector<Eigen::Index> out;
+  const std::vector<int> free = model.free_parameters();
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    const Parameter& p = model.parameters[free[c]];
+    if (p.curve < 0 && (p.value == p.lower || p.value == p.upper)) out.push_back(static_cast<Eigen::Index>(c));
+  }
+  return out;
+}
+
+/// Where bounds hold parameters, `smoothed` is the maximum without them, whose residuals are smaller than those of the estimate: the
+/// variance is taken from the estimate's own, with the effective parameters of those that no bound holds.
+void take_variance_inside_bounds(const Regressor& regressor, const FittedModel& out, PenalisedFit& smoothed) {
+  const std::vector<Eigen::Index> held = at_bounds(out.model);
+  if (held.empty()) return;
+  NormalEquations here = regressor.linearise(out.model).sums;
+  here.prior = very_wide_beside(here, out.model, out.penalties);
+  NormalEquations others = here;
+  for (const Eigen::Index c : held) {
+    others.N.row(c).setZero();
+    others.N.col(c).setZero();
+    others.g[c] = 0.0;
+  }
+  std::vector<Penalty> penalties = with_weights_held(out.penalties);
+  const PenalisedFit of_others = estimate_smoothing(others, penalties);
+  if (!of_others.ok) return;
+  const double sigma2 = std::max(here.rss / std::max(here.count - of_others.edf, 1.0), 1e-300);
+  const PenalisedFit inside = estimate_smoothing(here, penalties, sigma2);
+  if (!inside.ok) return;
+  smoothed = inside;
+  smoothed.edf = of_others.edf;
+}
+
 std::vector<double> derivative(const ReconstructedStates& states, int state) {
   std::vector<double> out;
   for (Eigen::Index i = 0; i < states.dx.rows(); ++i) out.push_back(states.dx(i, state));
@@ -230,17 +272,18 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
   return a;
 }
 
-/// Is the motion driven? From the residuals of the first equation of motion of the first experiment, beside the acceleration and what
-/// further noise of the measured size adds to them.
+/// Is the motion driven? From the residuals of the first equation of motion of the first experiment whose states are known, beside the
+/// acceleration and what further noise of the measured size adds to them.
 DrivenTest test_first_equation(const Regressor& regressor, const Regression& regression, const Model& model) {
-  const Signals& signals = regressor.experiments().front();
-  const ReconstructedStates& states = regressor.states().front();
+  const std::size_t e = regressor.first_known().value_or(0);
+  const Signals& signals = regressor.experiments()[e];
+  const ReconstructedStates& states = regressor.states()[e];
   const int row = regressor.rows().front();
   const double frequency = motion_frequency(model, states);
   constexpr int usual_lags = 20, beyond_stencil = 5;
   const double half_period = frequency > 0.0 ? std::numbers::pi / frequency / usual_step(signals.t) : usual_lags;
   const std::vector<double> acceleration = derivative(states, row);
-  const std::vector<double>& residual = regression.residuals.front();
+  const std::vector<double>& residual = regression.residuals[e * regressor.rows().size()];
   const auto of_noise = [&] {
     const std::vector<Signals> noisier{with_more_noise(model.system->spec(), signals)};
     return difference(Regressor(model, noisier).linearise(model).residuals.front(), residual);
@@ -252,6 +295,7 @@ void test_residuals(const Regressor& regressor, double sigma2, FittedModel& out)
   const Regression regression = regressor.linearise(out.model);
   const DrivenTest test = test_first_equation(regressor, regression, out.model);
   out.fit.driven = test.driven();
+  out.fit.driven_untested = !test.tested();
   out.fit.facts["whiteness"] = "equation " + in_words(test);
   const std::string unit = rate_unit(out.model.system->spec().states[regressor.rows().front()].unit);
   out.fit.noise["equation_residual"] = {std::sqrt(sigma2), 0.0, unit};
@@ -271,23 +315,25 @@ double describe_estimates(const Regressor& regressor, const Regression& regressi
   describe(out.model, with_uncertain_roughness(regression.sums, out.penalties, smoothed.sigma2, coloured.excess), visited, out.fit);
   describe_roughness(out.model, roughness_paths(regression.sums, out.penalties, smoothed.sigma2), out.fit);
   describe_freedom(out.model, regression.sums, out.penalties, smoothed.sigma2, out.fit);
-  if (degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
+  if (degrees >= kFewestDegrees && degrees < kShortRecord) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   return degrees;
 }
 
-void add_remarks(const Regressor& regressor, const NormalEquations& sums, FittedModel& out) {
-  const ReconstructedStates& states = regressor.states().front();
-  const Signals& first = regressor.experiments().front();
-  const InputTable inputs = input_table(first, out.model);
-  const std::size_t known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
-  out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(known), first.t[known]);
+void add_remarks(const Regressor& regressor, const NormalEquations& sums, double sigma2, FittedModel& out) {
+  if (const std::optional<std::size_t> e = regressor.first_known()) {
+    const ReconstructedStates& states = regressor.states()[*e];
+    const Signals& first = regressor.experiments()[*e];
+    const InputTable inputs = input_table(first, out.model);
+    const std::size_t known = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+    out.fit.warnings = scale_uncertainties(out.model, states.x.row(known).data(), inputs.at(known), first.t[known]);
+  }
   if (regressor.smoothed_at_steps()) {
     out.fit.warnings.emplace_back(
         "an input steps at nearly every sample: the derivatives of this method smear what it does, so that its parameters are biased "
         "by more than their sigmas; methods that run the model are not");
   }
-  if (const std::string which = undetermined_beside_priors(out.model, sums); !which.empty()) out.fit.warnings.push_back(which);
+  if (const std::string which = undetermined_beside_priors(out.model, sums, sigma2); !which.empty()) out.fit.warnings.push_back(which);
   warn_of_collinearity(out.model, out.fit.covariance, out.fit);
   warn_of_other_trims(out.fit);
   reject_prior_conflicts(out.model, out.fit.covariance, out.fit);
@@ -302,7 +348,7 @@ void describe_all(const Regressor& regressor, const PenalisedFit& smoothed, Fitt
     rows.r *= weight;
   }
   const double degrees = describe_estimates(regressor, regression, smoothed, out);
-  add_remarks(regressor, regression.sums, out);
+  add_remarks(regressor, regression.sums, smoothed.sigma2, out);
   if (degrees < kFewestDegrees) {
     withhold_sigmas(format_value(regression.sums.count) + " usable samples for " + format_value(std::round(10.0 * smoothed.edf) / 10.0) +
                         " unknowns are too few to estimate the uncertainty of the values: no sigma is given",
@@ -330,6 +376,7 @@ FittedModel equation_error(const Model& model, const std::vector<Signals>& exper
   }
   PenalisedFit smoothed;
   if (!solve(regressor, out, smoothed)) return out;
+  take_variance_inside_bounds(regressor, out, smoothed);
   test_residuals(regressor, smoothed.sigma2, out);
   describe_all(regressor, smoothed, out);
   if (out.fit.driven) {

@@ -5,23 +5,17 @@
 #include <cmath>
 
 #include "misfit/fit/regression/linear_windows.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
 
 constexpr std::size_t per_column = 4, per_driver = 6;  // regressors: the value now; the means now, H and 2 H earlier, H/2 and H later
 
-/// In sigmas from the mean of what is known.
+/// In sigmas from the mean of what is known; constant ones: 0.
 std::vector<double> standard(std::vector<double> values) {
-  double sum = 0.0, squares = 0.0, count = 0.0;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    sum += v;
-    squares += v * v;
-    ++count;
-  }
-  const double mean = sum / std::max(count, 1.0), sigma = std::sqrt(std::max(squares / std::max(count, 1.0) - mean * mean, 1e-300));
-  for (double& v : values) v = (v - mean) / sigma;
+  const MeanAndSigma spread = mean_and_sigma(values);
+  for (double& v : values) v = spread.constant() ? 0.0 * v : (v - spread.mean) / spread.sigma;
   return values;
 }
 
@@ -108,6 +102,7 @@ Influence influence_on(const std::vector<double>& y, const std::vector<std::vect
   std::vector<Past> columns{{own, running_means(own, mean), false}};
   for (const bool driver : {false, true}) {
     for (const auto& other : driver ? drivers : others) {
+      if (mean_and_sigma(other).constant()) continue;
       const std::vector<double> values = standard(other);
       columns.push_back({values, running_means(values, mean), driver});
     }

@@ -14,7 +14,7 @@ struct Influence {
 
 /// Granger's comparison: C. W. J. Granger, Econometrica 37 (1969) 424–438. Linear regressions of y(k + H) − y(k) on the values and the
 /// means over H/2 samples now, H and 2 H earlier, of drivers also over the two halves of what lies ahead, fitted and compared on separate
-/// stretches; NaN: missing. `drivers`: known to be inputs. All 0 where there are too few rows.
+/// stretches; NaN: missing. `drivers`: known to be inputs. Constant columns do not count. All 0 where there are too few rows.
 [[nodiscard]] Influence influence_on(const std::vector<double>& y, const std::vector<std::vector<double>>& others,
                                      const std::vector<std::vector<double>>& drivers = {});
 

@@ -15,29 +15,11 @@
 namespace misfit {
 namespace {
 
-struct Spread {
-  double mean = 0.0, sigma = 0.0;
-};
-
-Spread spread_of(const std::vector<double>& values) {
-  double sum = 0.0, squares = 0.0, count = 0.0;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    sum += v;
-    ++count;
-  }
-  const double mean = count > 0.0 ? sum / count : 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) squares += (v - mean) * (v - mean);
-  }
-  return {mean, count > 0.0 ? std::sqrt(squares / count) : 0.0};
-}
-
-/// Values in sigmas from their mean.
-std::vector<double> standard(const std::vector<double>& values, const Spread& spread) {
+/// Values in sigmas from their mean; constant ones: 0.
+std::vector<double> standard(const std::vector<double>& values, const MeanAndSigma& spread) {
   std::vector<double> out;
   out.reserve(values.size());
-  for (const double v : values) out.push_back((v - spread.mean) / spread.sigma);
+  for (const double v : values) out.push_back(spread.constant() ? 0.0 * v : (v - spread.mean) / spread.sigma);
   return out;
 }
 
@@ -73,7 +55,7 @@ class WindowSearch {
  public:
   WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers);
 
-  [[nodiscard]] bool possible() const { return record_.windows.size() > 1 && target_.sigma > 0.0; }
+  [[nodiscard]] bool possible() const { return record_.windows.size() > 1 && !target_.constant(); }
   /// The best model of that order; `pulled`: with a pull back to rest.
   [[nodiscard]] Found best(int order, bool pulled) const;
   [[nodiscard]] double excess(double mean_square) const { return std::max(mean_square - noise_, least_excess * noise_) + 1e-12; }
@@ -91,22 +73,21 @@ class WindowSearch {
   static constexpr double least_excess = 0.3;
   std::vector<GuessDriver> drivers_;
   WindowedRecord record_;
-  Spread target_;
-  std::vector<Spread> spreads_;
+  MeanAndSigma target_;
+  std::vector<MeanAndSigma> spreads_;
   double noise_ = 0.0;
 };
 
 WindowSearch::WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers)
-    : drivers_(std::move(drivers)), target_(spread_of(y)) {
+    : drivers_(std::move(drivers)), target_(mean_and_sigma(y)) {
   constexpr std::size_t longest = 4000;
-  if (!(target_.sigma > 0.0) || y.size() < 3) return;
+  if (target_.constant() || y.size() < 3) return;
   const std::size_t together = window_length(standard(y, target_)) / longest + 1;
   record_.t = thinned(t, together);
   record_.y = thinned(standard(y, target_), together);
   record_.drivers.resize(std::ssize(record_.t), std::ssize(drivers_));
   for (std::size_t i = 0; i < drivers_.size(); ++i) {
-    Spread spread = spread_of(drivers_[i].values);
-    if (!(spread.sigma > 0.0)) spread.sigma = 1.0;
+    const MeanAndSigma spread = mean_and_sigma(drivers_[i].values);
     const Eigen::VectorXd all = known_everywhere(standard(drivers_[i].values, spread), drivers_[i].smooth);
     const std::vector<double> mean = thinned({all.begin(), all.end()}, together);
     record_.drivers.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::VectorXd>(mean.data(), record_.drivers.rows());
@@ -171,6 +152,7 @@ void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) con
     std::optional<Found> best;
     for (std::size_t i = 0; i < drivers_.size(); ++i) {
       const auto term = static_cast<Eigen::Index>(i);
+      if (spreads_[i].constant()) continue;
       if (drivers_[i].output != outputs || std::find(found.terms.begin(), found.terms.end(), term) != found.terms.end()) continue;
       std::vector<Eigen::Index> terms = found.terms;
       terms.push_back(term);
@@ -232,6 +214,7 @@ std::vector<double> WindowSearch::coefficients(const Found& found) const {
   const double pull = found.poles.order == 1 ? found.poles.damping : found.poles.stiffness;
   out.back() = target_.sigma * solved[solved.size() - 1] + pull * target_.mean;
   for (std::size_t i = 0; i < drivers_.size(); ++i) {
+    if (spreads_[i].constant()) continue;
     out[i] = solved[i] * target_.sigma / spreads_[i].sigma;
     out.back() -= out[i] * spreads_[i].mean;
   }
@@ -240,12 +223,12 @@ std::vector<double> WindowSearch::coefficients(const Found& found) const {
 
 LinearGuess none_found(const GuessData& data) {
   LinearGuess out;
-  const Spread spread = spread_of(data.y);
+  const MeanAndSigma spread = mean_and_sigma(data.y);
   out.rest = spread.mean;
   out.tau = 0.1 * (data.t.back() - data.t.front());
   for (const auto& driver : data.drivers) {
-    const double sigma = spread_of(driver.values).sigma;
-    out.gain.push_back(driver.output || !(sigma > 0.0) || !(spread.sigma > 0.0) ? 0.0 : spread.sigma / sigma);
+    const MeanAndSigma own = mean_and_sigma(driver.values);
+    out.gain.push_back(driver.output || own.constant() || spread.constant() ? 0.0 : spread.sigma / own.sigma);
   }
   out.why = "no linear model could be estimated from the data: tau is a tenth of the record";
   return out;
@@ -356,7 +339,7 @@ std::optional<LinearGuess> drifting_first_order(const GuessData& data, double ex
   const Found found = search.best(1, true);
   if (!(found.poles.damping > 0.0) || search.excess(found.mean_square) > excess) return std::nullopt;
   LinearGuess out = first_order(search, found, 0.0);
-  out.rest += out.gain.back() * spread_of(data.t).mean;
+  out.rest += out.gain.back() * mean_and_sigma(data.t).mean;
   out.gain.pop_back();
   out.why = fmt::format("first order, time constant about {:.3g} s: with a drift in time beside it, {}; what drifts, the search will say",
                         out.tau, fits);

@@ -30,13 +30,20 @@ void check(const SlidingBinOptions& options) {
 struct TelescopedSum {
   double value = 0.0, sigma = 0.0;
   std::size_t count = 0;
-  [[nodiscard]] bool zero() const { return std::abs(value) < 2.0 * sigma; }
+  bool known = false;  ///< that sigma: there are two blocks or more
+  [[nodiscard]] bool zero() const { return !known || std::abs(value) < 2.0 * sigma; }
+  /// "0.20 ± 0.31 rad^2/s^3, within 2 sigma of 0".
+  [[nodiscard]] std::string in_words(const std::string& unit) const {
+    if (known) return format_value(value, sigma) + " " + unit + ", " + (zero() ? "within" : "beyond") + " 2 sigma of 0";
+    return format_value(value) + " " + unit +
+           ", not to be distinguished from 0: the record is too short for a sigma, which takes two periods";
+  }
 };
 
-/// Blocks of one second, or one period if that is longer: within them samples may be correlated as they like. Blocks that follow one
-/// another share the rate at their border, with opposite sign, so that sigma is rather too wide than too narrow.
+/// Blocks of one period (one second where no frequency is known): within them samples may be correlated as they like. Blocks that follow
+/// one another share the rate at their border, with opposite sign, so that sigma is rather too wide than too narrow.
 TelescopedSum telescoped_sum(const BinForm& form, const Signals& signals, const ReconstructedStates& states, double frequency) {
-  const double block = std::max(1.0, frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : 0.0);
+  const double block = frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : 1.0;
   std::vector<double> sums;
   TelescopedSum out;
   double begin = 0.0;
@@ -54,7 +61,8 @@ TelescopedSum telescoped_sum(const BinForm& form, const Signals& signals, const 
   const auto blocks = static_cast<double>(sums.size());
   double squares = 0.0;
   for (double s : sums) squares += (s - out.value / blocks) * (s - out.value / blocks);
-  if (blocks > 1.0) out.sigma = std::sqrt(squares * blocks / (blocks - 1.0));
+  out.known = sums.size() > 1;
+  if (out.known) out.sigma = std::sqrt(squares * blocks / (blocks - 1.0));
   return out;
 }
 
@@ -215,9 +223,8 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
   const auto& spec = form.model.system->spec();
   const std::string name = spec.damping_curve, level_unit = spec.states[form.level].unit;
   fit.facts["whiteness"] = "bins: " + in_words(pass.test);
-  const std::string sum = "sum of acceleration times rate over " + std::to_string(pass.sum.count) +
-                          " samples: " + format_value(pass.sum.value, pass.sum.sigma) + " " + level_unit + "^2/s^3, " +
-                          (pass.sum.zero() ? "within" : "beyond") + " 2 sigma of 0";
+  const std::string sum =
+      "sum of acceleration times rate over " + std::to_string(pass.sum.count) + " samples: " + pass.sum.in_words(level_unit + "^2/s^3");
   fit.facts["telescoped_sum"] = sum;
   const double known = pass.all.damping - pass.damping_of_acceleration;
   fit.parameters[name + "_all_data"] = {pass.all.damping, pass.all.damping_sigma, fit.curves.back().unit};
@@ -238,9 +245,15 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
     fit.warnings.push_back(telescopes + ". The equation explains most of the acceleration (" + fit.facts["whiteness"] +
                            "): the bins are used");
   } else {
-    mark_not_informative(form.model, name, "the equation leaves most of the acceleration unexplained", fit);
-    fit.warnings.push_back(name + " of this method is not informative: " + telescopes +
-                           ", and the equation does not explain the acceleration (" + fit.facts["whiteness"] + ")");
+    const bool tested = pass.test.tested();
+    mark_not_informative(form.model, name,
+                         tested ? "the equation leaves most of the acceleration unexplained"
+                                : "it is not known whether the equation explains the acceleration",
+                         fit);
+    fit.warnings.push_back(
+        name + " of this method is not informative: " + telescopes + ", and " +
+        (tested ? "the equation does not explain the acceleration (" : "it is not known whether the equation explains the acceleration (") +
+        fit.facts["whiteness"] + ")");
   }
 }
 
@@ -294,6 +307,7 @@ Fit sliding_bin(const Model& model, const Signals& signals, const SlidingBinOpti
   const Pass other = run(*form, signals, with_others);
   fit.noise["equation_residual"] = {pass.residual_rms, 0.0, rate_unit(spec.states[form->rate].unit)};
   fit.driven = pass.driven;
+  fit.driven_untested = !options.driven && !pass.test.tested();
   report_bins(options, pass, fit);
   fit.facts["stencils"] = stencils_in_words(*form, options.stencils, pass.bins, other.bins);
   report_damping(*form, pass, fit);

@@ -44,9 +44,10 @@ struct SlidingBinOptions {
 ///
 /// On any stationary motion Σ x'' x' = Σ (x'²/2)' telescopes: the acceleration adds nothing to the damping over all data, whatever
 /// the truth; what stands there is what the known terms (gravity, coning) add (facts["all_data"] gives both). Where the motion is driven
-/// (driven.h) and that sum is within 2 sigma of 0, damping is marked not informative, and also where the equation leaves more than a fifth
-/// of the averaged acceleration. A deterministic limit cycle telescopes as well, but there Eq. 8 holds at every sample and bins are right
-/// (the paper's validation): they stay informative, and a warning says that the average over all data says nothing.
+/// (driven.h) and that sum is within 2 sigma of 0 (from the scatter of its periods; of less than two it is not distinguished from 0),
+/// damping is marked not informative, and also where the equation leaves more than a fifth of the averaged acceleration, or that is not
+/// known. A deterministic limit cycle telescopes as well, but there Eq. 8 holds at every sample and bins are right (the paper's
+/// validation): they stay informative, and a warning says that the average over all data says nothing.
 ///
 /// Declines (status, message) where the model has no such form, too few samples are usable or the level does not move. InputError for
 /// widths, steps or counts that make no sense.

@@ -28,7 +28,7 @@ class Estimator {
       : experiments_(experiments),
         options_(options),
         start_driven_(start.fit.driven),
-        regression_says_driven_(options.from_regression && !start.fit.method.empty() ? std::optional(start.fit.driven) : std::nullopt),
+        regression_says_driven_(options.from_regression && !start.fit.method.empty() ? start.fit.says_driven() : std::nullopt),
         setting_(options.keep_roughness ? with_noise(start, setting_of(start.model, experiments, options))
                                         : setting_of(start.model, experiments, options)),
         penalties_(options.keep_roughness ? with_weights_held(start.penalties)

@@ -37,8 +37,9 @@ Eigen::MatrixXd describe_estimates(const Ending& end, const EndOfSearch& search,
   describe(out.model, covariance.topLeftCorner(columns, columns), visited, out.fit);
   describe_roughness(out.model, roughness_paths(end.linearised, with.penalties, 1.0), out.fit);
   describe_freedom(out.model, end.linearised, with.penalties, 1.0, out.fit);
-  if (degrees < kShortRecord && !out.model.noise_held()) add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
+  if (degrees >= kFewestDegrees && degrees < kShortRecord && !out.model.noise_held())
+    add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   const auto& outputs = out.model.system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[o]);
   return covariance;

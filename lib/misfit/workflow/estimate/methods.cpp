@@ -116,7 +116,7 @@ FittedMethod Methods::run_in_regression_form(const Estimator& method) {
   }
   SlidingBinOptions bins = bin_options(session_);
   const Fit& regressed = regression().fit;
-  if (regressed.status != FitStatus::declined && regressed.status != FitStatus::failed) bins.driven = regressed.driven;
+  if (regressed.status != FitStatus::declined && regressed.status != FitStatus::failed) bins.driven = regressed.says_driven();
   out = method.run({form->model, form->experiments, {}, bins, session_.options.threads}).at;
   if (form->experiments.size() > 1)
     fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
