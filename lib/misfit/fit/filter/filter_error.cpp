@@ -245,8 +245,7 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
   for (std::size_t e = 0; e < estimate.data.size(); ++e) {
     const Signals& signals = *estimate.data[e].signals;
     const std::optional<Gaps> gaps = gaps_of(estimate.data[e], estimate.traces[e]);
-    if (!gaps) return;
-    if (gaps->missing == 0) continue;
+    if (!gaps || gaps->missing == 0) continue;
     const auto missing = static_cast<double>(gaps->missing);
     fit.facts["gaps: " + signals.name] = std::to_string(gaps->missing) + " samples (" +
                                          format_value(100.0 * missing / static_cast<double>(signals.samples())) +
