@@ -228,5 +228,40 @@ TEST(UsualNoise, OfARecordingSampledMuchFasterThanItMovesIsThatOfTheMotion) {
   }
 }
 
+/// u lets the force act: not at the first sample.
+TEST(UsualNoise, OfAForceThatDoesNotActAtFirstIsThatOfTheOtherSamples) {
+  const auto systems = registry_with(R"toml(
+[states]
+x = { unit = "m", scale = 0.1 }
+v = { unit = "m/s", rate_of = "x", scale = 1.0 }
+[inputs]
+u = { unit = "-" }
+[parameters]
+k = { unit = "1/s^2", value = 9.0 }
+[ports]
+push = { unit = "m/s^2" }
+[equations]
+x = "v"
+v = "-k*x + 0.001*u*push"
+[outputs]
+x = { unit = "m", noise = 1e-3 }
+[roles]
+force_ports = ["push"]
+)toml");
+  const FilterModel model = with_random_force(assemble(request_of("text"), *systems));
+  Signals s;
+  s.measured = {{"x", "m", {}, 0.0}};
+  s.inputs = {{"u", "-", {}, 0.0}};
+  for (int k = 0; k < 400; ++k) {
+    s.t.push_back(0.05 * k);
+    s.measured[0].values.push_back(0.1 * std::cos(3.0 * s.t.back()));
+    s.inputs[0].values.push_back(1.0);
+  }
+  const double always = usual_noise(model, {filter_data(model, s)}).force;
+  s.inputs[0].values.front() = 0.0;
+  EXPECT_NEAR(usual_noise(model, {filter_data(model, s)}).force, always, 1e-9 * always);
+  EXPECT_GT(always, 50.0) << "0.3 of 0.9/sqrt(2) m/s^2 over 0.001";
+}
+
 }  // namespace
 }  // namespace misfit
