@@ -104,6 +104,18 @@ TEST(Gaps, AfterAnHourEveryMethodHasTheRightAnswer) {
   expect_right(filter_error(start.from, parts, one).fit, 1.0);
 }
 
+TEST(Gaps, ASharedInitialStateIsSaidToBeOneOfEachExperimentInTheFilter) {
+  Model model = first_order_model();
+  model.state_specs[0].initial = Initial::shared;
+  const auto facts = [&](const std::vector<Signals>& experiments) {
+    FilterOptions one;
+    one.threads = 1;
+    return filter_error(trajectory_start(model, experiments).from, experiments, one).fit.facts;
+  };
+  EXPECT_THAT(facts({first_order(0.0), first_order(0.0)}), testing::Contains(testing::Pair("shared initial states", HasSubstr("x: "))));
+  EXPECT_THAT(facts({first_order(0.0)}), testing::Not(testing::Contains(testing::Key("shared initial states"))));
+}
+
 /// What is usual is not known of the first, which has 50 samples.
 TEST(Gaps, OfEveryExperimentAreSaidThoughOneIsTooShort) {
   std::vector<Signals> experiments = {first_order(0.0, 1.0, 50), first_order(0.0)};

@@ -228,6 +228,23 @@ TEST(UsualNoise, OfARecordingSampledMuchFasterThanItMovesIsThatOfTheMotion) {
   }
 }
 
+TEST(StartOfStates, ThatTheStudyKnowsIsHeldWhereTheRecordingBegins) {
+  Signals s = swinging_cart(0.05);
+  Model model = assemble(cart({}), registry());
+  model.state_specs[0].initial = Initial::fixed;
+  model.state_specs[0].start = 0.25;
+  const FilterModel forced = with_random_force(model);
+  const FilterData known = filter_data(forced, s);
+  EXPECT_EQ(known.first, 0U);
+  EXPECT_EQ(known.start[0], 0.25);
+  EXPECT_EQ(known.covariance(0, 0), 0.0);
+  EXPECT_GT(known.covariance(1, 1), 0.0) << "the speed is not known";
+  s.after_gap = true;
+  const FilterData later = filter_data(forced, s);
+  EXPECT_NEAR(later.start[0], 0.3, 0.01) << "of the recording's beginning, not of a part behind a gap";
+  EXPECT_GT(later.covariance(0, 0), 0.0);
+}
+
 /// u lets the force act: not at the first sample.
 TEST(UsualNoise, OfAForceThatDoesNotActAtFirstIsThatOfTheOtherSamples) {
   const auto systems = registry_with(R"toml(

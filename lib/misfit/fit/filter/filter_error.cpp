@@ -258,6 +258,17 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
   }
 }
 
+/// Where the study has one initial state for all experiments.
+void say_that_starts_are_not_shared(const FilterEstimate& estimate, Fit& fit) {
+  std::vector<std::string> shared;
+  for (const StateSpec& state : estimate.model.state_specs) {
+    if (state.initial == Initial::shared) shared.push_back(state.name);
+  }
+  const auto begins = [](const FilterData& data) { return !data.signals->after_gap; };
+  if (shared.empty() || std::count_if(estimate.data.begin(), estimate.data.end(), begins) < 2) return;
+  fit.facts["shared initial states"] = join_words(shared) + ": of each experiment its own here, as uncertain as its motion is wide";
+}
+
 /// In the free parameters and, where they are estimated together, the noise. The estimate is a maximum: there the data's slope is minus
 /// that of priors and roughness.
 NormalEquations linearised(const FilterEstimate& estimate) {
@@ -309,10 +320,12 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
   }
 }
 
-/// What is estimated beside the free parameters: initial states of the system in every experiment, and the noise.
+/// What is estimated beside the free parameters: initial states of the system in every experiment, but for known ones, and the noise.
 double unknowns_beside_parameters(const FilterEstimate& estimate) {
-  const std::size_t states = estimate.model.system_states() * estimate.data.size();
-  return static_cast<double>(states + estimate.noise_fit.logs.size());
+  double states = 0.0;
+  for (const FilterData& data : estimate.data)
+    states += static_cast<double>((data.covariance.diagonal().head(estimate.model.system_states()).array() > 0.0).count());
+  return states + static_cast<double>(estimate.noise_fit.logs.size());
 }
 
 /// Measurements in the likelihood, and how many of them are left when everything estimated is taken off.
@@ -387,6 +400,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);
+  say_that_starts_are_not_shared(estimate, fit);
   test_innovations(estimate, fit);
   if (!estimate.integration.empty()) fit.facts["integration"] = estimate.integration;
   for (const auto& data : estimate.data) {
