@@ -44,7 +44,7 @@ struct Backlash {
        .upper = 1e12,
        .scale = 0.1,
        .doc = "half of the clearance",
-       .scan = {.from = 0.03, .to = 0.3, .count = 4, .over = "|displacement|"}},
+       .scan = {.from = 0.03, .to = 0.3, .count = 4, .over = "+-displacement"}},
       {.name = "backlash_tau",
        .kind = CoefficientKind::shape,
        .value = 0.01,

@@ -10,7 +10,8 @@ struct Exchange {
   static constexpr const char* formula = "F = exchange (other - level)";
   static constexpr const char* symbols = "exchange [port/level], level that the port changes [any], other level [level]";
   static constexpr const char* valid = "flow in proportion to the difference; the other level is a state of the model or measured";
-  static constexpr const char* size = "two bodies of 100 J/K joined by 0.5 W/K: 5 mK/s per kelvin, a time constant of 200 s";
+  static constexpr const char* size =
+      "two bodies of 100 J/K joined by 0.5 W/K: 5 mK/s per kelvin, a time constant of 100 s, of 200 s where the other is held";
   static constexpr const char* source = "Newton's law of cooling (Phil. Trans. 22, 1701) between two bodies";
   static constexpr const char* excludes = "radiation, one-way flow (overflow_into), what the other level loses";
 

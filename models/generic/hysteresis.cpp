@@ -39,7 +39,7 @@ struct Hysteresis {
        .upper = 1e12,
        .scale = 0.1,
        .doc = "motion over which the force comes to its limit",
-       .scan = {.from = 0.06, .to = 0.5, .count = 4, .over = "|displacement|"}},
+       .scan = {.from = 0.06, .to = 0.5, .count = 4, .over = "+-displacement"}},
       {.name = "loop",
        .kind = CoefficientKind::shape,
        .value = 0.5,

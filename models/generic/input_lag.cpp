@@ -10,7 +10,9 @@ struct InputLag {
   static constexpr const char* symbols =
       "lagged_gain [port/input]: the gain by which the model lets the input act, input as recorded [any], z lagged input [input], "
       "input_tau time constant [s]";
-  static constexpr const char* valid = "one time constant, which does not depend on the input's size or direction; z begins at 0";
+  static constexpr const char* valid =
+      "one time constant, which does not depend on the input's size or direction; z begins "
+      "where the recording leaves it";
   static constexpr const char* size = "a winding of 20 mH and 1 Ohm: 20 ms, at 10 rad/s 2 % of the amplitude and 11 deg";
   static constexpr const char* source = "Ljung, System Identification (1999), 4.2: process models; first-order lag";
   static constexpr const char* excludes = "pure delay (delay), rate limits, a lag of the sensor (sensor_lag)";

@@ -6,7 +6,8 @@ using namespace misfit;
 
 /// The flow about the canopy needs time: part of the static moment is the one that belongs to where axis and relative wind were a moment
 /// ago. In fixed axes, so that the memory does not turn with the plane of the tilt. Nothing is added in equilibrium: C_m keeps its meaning.
-/// Slow motion sees damping: C_m_alpha dalpha_T/dt share tau less of the static moment.
+/// Slow motion sees C_m_alpha dalpha_T/dt share tau less of the static moment: damping where the static moment opens the angle further,
+/// the opposite of it about a stable trim.
 struct AerodynamicLag {
   static constexpr const char* formula =
       "M_y, M_z += share (lambda - M_static), lambda' = (M_static - lambda)/tau; M_static = q S D [C_m(alpha_T)/sin(alpha_T)] (w_y, w_z), "
@@ -18,7 +19,8 @@ struct AerodynamicLag {
   static constexpr const char* valid =
       "one time constant, tilts below 80 deg (a moment along the axis, which does nothing, is left out of the memory)";
   static constexpr const char* size =
-      "share = 1, tau = D/V = 45 ms at a slope of C_m of 0.35 per rad: a damping moment of 36 N m s/rad, thrice that of C_mq = -0.25";
+      "share = 1, tau = D/V = 45 ms at a slope of C_m of 0.35 per rad: 36 N m s/rad, thrice C_mq = -0.25; it damps where the slope is "
+      "unstable, and drives the motion where it is stable";
   static constexpr const char* source =
       "Tobak and Schiff, NASA TR R-456 (1976): indicial response; one exponential of R. T. Jones, NACA 681 (1940)";
   static constexpr const char* excludes = "pure delay, several time constants, lag of the damping";

@@ -12,7 +12,7 @@ struct ApexJitter {
       "P = P0 + jitter (e_y, e_z), e' = v, v' = -w^2 e - 2 zeta w v + 2 sqrt(zeta w^3) white noise, w = 2 pi f (each axis)";
   static constexpr const char* symbols = "jitter standard deviation [px], f jitter_frequency [Hz], zeta jitter_damping [-]";
   static constexpr const char* valid = "f below half the sampling rate; the same in both axes";
-  static constexpr const char* size = "about 1 px near 9 Hz: more than the measurement noise, a tenth of a degree";
+  static constexpr const char* size = "about 1 px near 9 Hz: more than the measurement noise, 0.05 deg";
   static constexpr const char* source =
       "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Parachute Attitude Measurements: motion "
       "of the disk relative to the band; var e = D^2/(4 zeta w^3) = 1 (Lyapunov equation)";

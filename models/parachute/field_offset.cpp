@@ -30,7 +30,8 @@ struct FieldOffset {
        .upper = 1e6,
        .scale = 1.0,
        .doc = "fields per second",
-       .fixed = true},
+       .fixed = true,
+       .scan = {.from = 1.0, .to = 1.0, .count = 1, .over = "1/step"}},
   };
 
   static constexpr bool traceable = false;  // the field is rounded off the number itself

@@ -9,7 +9,7 @@ struct ImageCentre {
   static constexpr const char* formula = "P_y = P_y0 + centre_y_error, P_z = P_z0 + centre_z_error";
   static constexpr const char* symbols = "P_y0, P_z0 pixels by the calibrated camera; errors of its centre [px]";
   static constexpr const char* valid = "a camera that does not move during the recording";
-  static constexpr const char* size = "10 px (Table 2): 1.6 deg of tilt with K = 134 px/m";
+  static constexpr const char* size = "10 px (Table 2): 0.47 deg of tilt with K = 134 px/m";
   static constexpr const char* source =
       "Schoenenberger, Queen, Cruz, Parachute Aerodynamics from Video Data, AIAA 2005-1633 (2005), Table 2: P_y, P_z +-10 px, read as 3 "
       "sigma";

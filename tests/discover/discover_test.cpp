@@ -287,6 +287,42 @@ TEST(CandidateModels, LeaveOutWhatDoesNotSuit) {
     EXPECT_THAT(names, testing::Not(testing::Contains(other))) << "in the model, driven by noise, of another system, or specialised";
 }
 
+/// Its coefficient is C_n/sin(alpha_T), as the formula reads it.
+TEST(CandidateModels, ASideMomentIsLookedForThoughAStudyHasItAsACurve) {
+  const Flight flight(fly(5.0, 35));
+  const std::vector<CandidateModel> all = candidate_models(flight.estimate, flight.request, registry(), nullptr);
+  const auto found = std::find_if(all.begin(), all.end(), [](const CandidateModel& s) { return s.effect == "side_moment"; });
+  ASSERT_NE(found, all.end());
+  ASSERT_EQ(found->strengths.size(), 1U);
+  EXPECT_EQ(found->model.parameters[found->strengths.front()].name, "C_n");
+  const CellScore cell = score_cell(flight.estimate, ScoreTest(flight.estimate), *found, found->cells.front());
+  ASSERT_EQ(cell.result.dof, 1);
+  EXPECT_LT(std::abs(cell.result.amplitude[0]), 4.0 * cell.result.sigma[0]) << "there is none";
+  EXPECT_LT(cell.result.sigma[0], 1.0) << "and that is known";
+}
+
+/// Eq. 8 of the paper: the damping is called C_m_alphadot there, and alpha_T carries its sign.
+TEST(CandidateModels, ADampingIsLookedForUnderTheNameThatTheSystemGivesIt) {
+  Signals s;
+  s.measured = {{"alpha_T", "rad", {}, 0.0}};
+  s.inputs = {{"phi", "rad", {}, 0.0}, {"phi_rate", "rad/s", {}, 0.0}};
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 2e-3);
+  for (int k = 0; k < 240; ++k) {
+    s.t.push_back(k / 60.0);
+    s.measured[0].values.push_back((12.0 + 5.0 * std::sin(7.0 * s.t.back())) * degree + noise(random));
+    for (Signal& input : s.inputs) input.values.push_back(0.0);
+  }
+  ModelRequest request = parachute(false);
+  request.effects = {effect("static_moment"), effect("gravity")};
+  request.curves.erase("C_m_alphadot");
+  const std::vector<Signals> signals = {s};
+  const std::vector<CandidateModel> all = candidate_models(fitted(request, signals), request, registry(), nullptr);
+  const auto damping = std::find_if(all.begin(), all.end(), [](const CandidateModel& c) { return c.effect == "pitch_damping"; });
+  ASSERT_NE(damping, all.end());
+  EXPECT_EQ(damping->model.parameters[damping->strengths.front()].name, "C_m_alphadot");
+}
+
 TEST(CandidateModels, WhatRunsWithTheClockReadsTheTime) {
   const Flight flight(fly(5.0, 35));
   int seen = 0;

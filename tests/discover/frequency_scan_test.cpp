@@ -80,8 +80,35 @@ TEST(FrequencyScan, OfSeveralExperimentsAreTheSumOverAll) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> step(0.01, 0.03);
   for (int k = 0; k < 300; ++k) times[1].push_back(times[1].back() + step(random));
-  EXPECT_NEAR(frequency_grid(times, 0.2, 12.0, 1).step, 59.94 / (4.0 * 1499.0), 1e-12) << "half the width of a line in the longest";
+  EXPECT_NEAR(frequency_grid(times, 0.2, 12.0, 1).step, 1.0 / (4.0 * (100.0 + 399.0 / 25.0)), 1e-12) << "half the width of a line in all";
   expect_as_defined(times, 1e-9);
+}
+
+/// Ten seconds, and ten more after four minutes: a line is one of fringes that are a quarter of a thousandth of a hertz apart from the
+/// next.
+TEST(FrequencyScan, OfTwoPartsOfARecordingIsFineEnoughForTheirFringes) {
+  const SampleTimes parts = {even(0.0, 50.0, 500), even(250.0, 50.0, 500)};
+  constexpr double line = 4.3217;
+  Eigen::VectorXd x(1000);
+  Eigen::Index at = 0;
+  for (const auto& part : parts) {
+    for (const double t : part) x[at++] = std::sin(two_pi * line * t);
+  }
+  const FrequencyGrid grid = frequency_grid(parts, 0.2, 12.0, 1);
+  const std::vector<double> power = periodogram(x, parts, grid);
+  const auto best = std::max_element(power.begin(), power.end());
+  EXPECT_GT(*best, 0.8 * by_definition(x, parts, line));
+  EXPECT_NEAR(grid.at(static_cast<std::size_t>(best - power.begin())), line, 1.5 / 250.0);
+  EXPECT_NEAR(grid.first, 0.2, 1e-12) << "above half a period in one part";
+}
+
+/// Lines are as many as fit in the range: sqrt(12 var t), of one even recording its length, of two short ones far apart more than that.
+TEST(FrequencyScan, CountsLinesByHowFarTheSamplesAreSpread) {
+  const auto length = [](const SampleTimes& times) { return frequency_grid(times, 0.2, 12.0, 1).even_length; };
+  EXPECT_NEAR(length({even(3.0, 50.0, 2001)}), 40.0, 0.05);
+  EXPECT_NEAR(length({even(0.0, 50.0, 2001), even(0.0, 50.0, 2001)}), 40.0, 0.05) << "both at the same time";
+  EXPECT_NEAR(length({even(0.0, 50.0, 51), even(50.0, 50.0, 51)}), 50.0 * std::sqrt(3.0), 0.1);
+  EXPECT_LT(length({even(0.0, 50.0, 51), even(1e9, 50.0, 51)}), 200.0) << "clocks that have nothing to do with each other";
 }
 
 TEST(FrequencyScan, StandOutOfTheirBackground) {

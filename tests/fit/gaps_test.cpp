@@ -104,6 +104,31 @@ TEST(Gaps, AfterAnHourEveryMethodHasTheRightAnswer) {
   expect_right(filter_error(start.from, parts, one).fit, 1.0);
 }
 
+TEST(Gaps, ASharedInitialStateIsSaidToBeOneOfEachExperimentInTheFilter) {
+  Model model = first_order_model();
+  model.state_specs[0].initial = Initial::shared;
+  const auto facts = [&](const std::vector<Signals>& experiments) {
+    FilterOptions one;
+    one.threads = 1;
+    return filter_error(trajectory_start(model, experiments).from, experiments, one).fit.facts;
+  };
+  EXPECT_THAT(facts({first_order(0.0), first_order(0.0)}), testing::Contains(testing::Pair("shared initial states", HasSubstr("x: "))));
+  EXPECT_THAT(facts({first_order(0.0)}), testing::Not(testing::Contains(testing::Key("shared initial states"))));
+}
+
+/// What is usual is not known of the first, which has 50 samples.
+TEST(Gaps, OfEveryExperimentAreSaidThoughOneIsTooShort) {
+  std::vector<Signals> experiments = {first_order(0.0, 1.0, 50), first_order(0.0)};
+  experiments[0].name = "short";
+  experiments[1].name = "long";
+  for (std::size_t i = 120; i < 130; ++i) experiments[1].measured[0].values[i] = std::nan("");
+  const Model model = first_order_model();
+  FilterOptions one;
+  one.threads = 1;
+  const Fit fit = filter_error(trajectory_start(model, experiments).from, experiments, one).fit;
+  EXPECT_THAT(fit.facts, testing::Contains(testing::Key("gaps: long")));
+}
+
 TEST(Gaps, AGapThatTheModelCanBeRunAcrossIsBridged) {
   EXPECT_EQ(split_at_gaps(first_order_model(0.001), first_order(3600.0, 0.001)).size(), 1U) << "a time constant of 1000 s";
   EXPECT_EQ(split_at_gaps(first_order_model(), first_order(5.0)).size(), 1U) << "50 steps, but five time constants";

@@ -51,5 +51,28 @@ TEST(TryNoise, ANoiseWithoutADensityIsNotTaken) {
   EXPECT_EQ(ascent.joint().size(), static_cast<Eigen::Index>(1 + ascent.out.noise_fit.logs.size())) << "steps over both blocks may follow";
 }
 
+/// Its bounds and information are those of a noise that the search is not at.
+TEST(TryNoise, OfANoiseThatIsNotTakenNothingStays) {
+  const auto known = testing_decay::registry_with(testing_decay::decay_text);
+  const Model model = assemble(testing_decay::request_of("text"), *known);
+  const std::vector<Signals> experiments{testing_decay::decay(200, 5)};
+  LikelihoodAscent ascent(trajectory_start(model, experiments).from.model, {}, experiments, {});
+  ASSERT_TRUE(ascent.linearise());
+  NoiseFit worse = fit_noise(ascent.runs(), ascent.out.noise, {ascent.out.around, 1});
+  worse.noise.channels.front().white *= 10.0;
+  worse.at_bound.flip();
+  ASSERT_FALSE(ascent.try_noise(worse));
+  EXPECT_NE(ascent.out.noise_fit.at_bound, worse.at_bound) << "and none was taken before";
+  EXPECT_EQ(ascent.out.noise_fit.at_bound.size(), ascent.out.noise_fit.logs.size());
+
+  ascent.iterate(5, 1e-3);
+  const NoiseFit before = ascent.out.noise_fit;
+  worse.information *= 2.0;
+  ASSERT_FALSE(ascent.try_noise(worse));
+  EXPECT_EQ(ascent.out.noise_fit.at_bound, before.at_bound);
+  EXPECT_EQ(ascent.out.noise_fit.information, before.information);
+  EXPECT_EQ(ascent.out.noise_fit.noise.channels.front().white, before.noise.channels.front().white);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -77,6 +77,15 @@ TEST(SlowForce, IsSaidWithTimePeriodAndStrength) {
                                                testing::HasSubstr("[force] correlation_time"))));
 }
 
+/// The noise as the search leaves it no longer knows what the study holds.
+TEST(SlowForce, NothingIsSaidOfOneWhoseTimeTheStudyHolds) {
+  FilterError found = fitted(4.0);
+  ASSERT_TRUE(found.estimate) << found.fit.message;
+  ASSERT_NE(warning_of_slow_force(*found.estimate), "");
+  found.estimate->around.time_held = true;
+  EXPECT_EQ(warning_of_slow_force(*found.estimate), "");
+}
+
 TEST(SlowForce, NothingIsSaidOfAFastOne) {
   const FilterError found = fitted(0.05);
   ASSERT_TRUE(found.estimate) << found.fit.message;

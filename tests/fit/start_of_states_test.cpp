@@ -228,5 +228,57 @@ TEST(UsualNoise, OfARecordingSampledMuchFasterThanItMovesIsThatOfTheMotion) {
   }
 }
 
+TEST(StartOfStates, ThatTheStudyKnowsIsHeldWhereTheRecordingBegins) {
+  Signals s = swinging_cart(0.05);
+  Model model = assemble(cart({}), registry());
+  model.state_specs[0].initial = Initial::fixed;
+  model.state_specs[0].start = 0.25;
+  const FilterModel forced = with_random_force(model);
+  const FilterData known = filter_data(forced, s);
+  EXPECT_EQ(known.first, 0U);
+  EXPECT_EQ(known.start[0], 0.25);
+  EXPECT_EQ(known.covariance(0, 0), 0.0);
+  EXPECT_GT(known.covariance(1, 1), 0.0) << "the speed is not known";
+  s.after_gap = true;
+  const FilterData later = filter_data(forced, s);
+  EXPECT_NEAR(later.start[0], 0.3, 0.01) << "of the recording's beginning, not of a part behind a gap";
+  EXPECT_GT(later.covariance(0, 0), 0.0);
+}
+
+/// u lets the force act: not at the first sample.
+TEST(UsualNoise, OfAForceThatDoesNotActAtFirstIsThatOfTheOtherSamples) {
+  const auto systems = registry_with(R"toml(
+[states]
+x = { unit = "m", scale = 0.1 }
+v = { unit = "m/s", rate_of = "x", scale = 1.0 }
+[inputs]
+u = { unit = "-" }
+[parameters]
+k = { unit = "1/s^2", value = 9.0 }
+[ports]
+push = { unit = "m/s^2" }
+[equations]
+x = "v"
+v = "-k*x + 0.001*u*push"
+[outputs]
+x = { unit = "m", noise = 1e-3 }
+[roles]
+force_ports = ["push"]
+)toml");
+  const FilterModel model = with_random_force(assemble(request_of("text"), *systems));
+  Signals s;
+  s.measured = {{"x", "m", {}, 0.0}};
+  s.inputs = {{"u", "-", {}, 0.0}};
+  for (int k = 0; k < 400; ++k) {
+    s.t.push_back(0.05 * k);
+    s.measured[0].values.push_back(0.1 * std::cos(3.0 * s.t.back()));
+    s.inputs[0].values.push_back(1.0);
+  }
+  const double always = usual_noise(model, {filter_data(model, s)}).force;
+  s.inputs[0].values.front() = 0.0;
+  EXPECT_NEAR(usual_noise(model, {filter_data(model, s)}).force, always, 1e-9 * always);
+  EXPECT_GT(always, 50.0) << "0.3 of 0.9/sqrt(2) m/s^2 over 0.001";
+}
+
 }  // namespace
 }  // namespace misfit

@@ -167,6 +167,24 @@ TEST(Assemble, ANumberWhereOnlyACurveIsRegularIsRefused) {
   EXPECT_THAT(message_of(r), AllOf(HasSubstr("study.toml:30"), HasSubstr("C_m must be a curve"), HasSubstr("[curves] C_m")));
 }
 
+/// As discovery asks for it: what the formula reads, C_m/sin(alpha_T). Where alpha_T carries its sign it would be a constant moment.
+TEST(Assemble, ANumberOverASineIsTakenOfAnEffectThatNoFileHas) {
+  for (const bool induced : {true, false}) {
+    ModelRequest r = parachute(induced);
+    r.curves.erase("C_m");
+    r.effects.front().where = {};
+    r.parameters["static_moment.C_m"].value = 0.01;
+    if (!induced) {
+      EXPECT_THAT(message_of(r), HasSubstr("C_m must be a curve"));
+      continue;
+    }
+    const Model m = assemble(r, registry());
+    EXPECT_EQ(m.find_curve("C_m"), nullptr);
+    ASSERT_GE(m.find_parameter("C_m"), 0);
+    EXPECT_EQ(m.parameters[static_cast<std::size_t>(m.find_parameter("C_m"))].value, 0.01);
+  }
+}
+
 TEST(Assemble, BoundsAloneDoNotTurnADefaultCurveIntoANumber) {
   ModelRequest r = parachute(true);
   r.parameters["C_m"].lower = -0.2;

@@ -268,7 +268,8 @@ std::vector<KeyGroup> initial_groups() {
   return {{"initial", "The state at the first sample of each experiment.",
        {{.name = "STATE", .type = Type::other, .unit = "of the state", .otherwise = "as the system says (most: free)",
          .form = R"("free", "shared", number or table)", .any = true,
-         .meaning = "free: estimated in every experiment; shared: one value for all experiments; a number: fixed."}}},
+         .meaning = std::string("free: estimated in every experiment; shared: one value for all experiments, in ") +
+                    random_force_estimator().name + " one each; a number: fixed."}}},
       {"initial.NAME", "The same with a value to start from.",
        {{.name = "kind", .type = Type::choice, .otherwise = "as the system says", .choices = {"free", "shared", "fixed"},
          .meaning = "As above."},

@@ -198,13 +198,43 @@ std::optional<OperatingRange::Range> range_of(std::vector<double> values) {
   return range;
 }
 
+/// What ScanSpec::over says: of which role, and what of it.
+struct ScannedSize {
+  enum class Kind { range, largest, half_range } kind = Kind::range;
+  std::string_view role;
+};
+ScannedSize scanned_size(const ScanSpec& scan) {
+  const std::string_view over = scan.over;
+  if (over.size() > 2 && over.starts_with('|') && over.ends_with('|')) return {ScannedSize::Kind::largest, over.substr(1, over.size() - 2)};
+  if (over.starts_with("+-")) return {ScannedSize::Kind::half_range, over.substr(2)};
+  return {ScannedSize::Kind::range, over};
+}
+
 /// Index of the quantity that ScanSpec::over names, −1 if it names none.
 int scanned_quantity(const BoundEffect& effect, const ScanSpec& scan) {
-  std::string_view role = scan.over;
-  if (role.size() > 2 && role.starts_with('|') && role.ends_with('|')) role = role.substr(1, role.size() - 2);
+  const std::string_view role = scanned_size(scan).role;
   const auto& quantities = effect.effect->spec().quantities;
   const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const Role& r) { return role == r.name; });
   return found == quantities.end() ? -1 : effect.quantities[found - quantities.begin()];
+}
+
+/// What the numbers of a scan are shares of.
+double unit_of_scan(const ScannedSize& size, const OperatingRange::Range& range) {
+  const double width = range.high - range.low;
+  if (size.kind == ScannedSize::Kind::half_range) return 0.5 * width;
+  return size.kind == ScannedSize::Kind::largest ? std::max(std::abs(range.low), std::abs(range.high)) : width;
+}
+
+/// Samples per second where none is missing. Of many samples: times printed with few digits have no exact interval.
+double sampling_rate(const std::vector<double>& steps, double usual) {
+  constexpr double missing = 1.5;  // usual steps
+  double time = 0.0, count = 0.0;
+  for (const double h : steps) {
+    if (h > missing * usual) continue;
+    time += h;
+    count += 1.0;
+  }
+  return count / time;
 }
 
 /// Usual sigma of each quantity one step ahead: of g x, x the predicted state with its covariance P and g the quantity's slope.
@@ -312,6 +342,7 @@ OperatingRange::OperatingRange(const FilterEstimate& estimate) : estimate_(estim
   const auto middle = steps.begin() + steps.size() / 2;
   std::nth_element(steps.begin(), middle, steps.end());
   step_ = *middle;
+  rate_ = sampling_rate(steps, step_);
 }
 
 std::optional<OperatingRange::Range> OperatingRange::range(int quantity) const {
@@ -327,9 +358,7 @@ double OperatingRange::narrowest(int quantity) const {
 
 std::optional<OperatingRange::Range> OperatingRange::range_of_edge(const BoundEffect& effect, std::size_t coefficient) const {
   const ScanSpec& scan = effect.effect->spec().coefficients[coefficient].scan;
-  const std::string_view over = scan.over;
-  if (over.empty() || over == "step" || over.front() == '|') return std::nullopt;
-  return range(scanned_quantity(effect, scan));
+  return scanned_size(scan).kind == ScannedSize::Kind::range ? range(scanned_quantity(effect, scan)) : std::nullopt;
 }
 
 double OperatingRange::lower_bound(const BoundEffect& effect, std::size_t coefficient) const {
@@ -352,21 +381,21 @@ std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t 
   const CoefficientSpec& c = spec.coefficients[coefficient];
   if (const auto measured = of_measurements(effect, c.measured_as)) return {std::clamp(*measured, c.lower, c.upper)};
   const std::string_view over = c.scan.over;
-  const bool size = over.starts_with('|');
+  const bool of_samples = over == "step" || over == "1/step", size = scanned_size(c.scan).kind != ScannedSize::Kind::range;
   double origin = 0.0, unit = 1.0;
-  if (over == "step") {
-    unit = step_;
+  if (of_samples) {
+    unit = over == "step" ? step_ : rate_;
   } else if (!over.empty()) {
     const auto range = this->range(scanned_quantity(effect, c.scan));
     if (!range) return {c.value};
     origin = size ? 0.0 : range->low;
-    unit = size ? std::max(std::abs(range->low), std::abs(range->high)) : range->high - range->low;
+    unit = unit_of_scan(scanned_size(c.scan), *range);
   }
   std::vector<double> out;
   for (int i = 0; i < c.scan.count; ++i) {
     const int steps = std::max(c.scan.count - 1, 1);
-    const double share = size || over == "step" ? c.scan.from * std::pow(c.scan.to / c.scan.from, static_cast<double>(i) / steps)
-                                                : c.scan.from + (c.scan.to - c.scan.from) * i / steps;
+    const double share = size || of_samples ? c.scan.from * std::pow(c.scan.to / c.scan.from, static_cast<double>(i) / steps)
+                                            : c.scan.from + (c.scan.to - c.scan.from) * i / steps;
     out.push_back(std::clamp(origin + unit * share, lower_bound(effect, coefficient), c.upper));
   }
   return out;

@@ -64,7 +64,7 @@ class OperatingRange {
   std::vector<std::optional<Range>> ranges_;
   std::vector<Digits> digits_;          ///< of the outputs
   mutable std::vector<double> sigmas_;  ///< of quantities; made when first asked for, by a run of the filter
-  double step_ = 0.0;
+  double step_ = 0.0, rate_ = 0.0;      ///< [s], [Hz]
 };
 
 }  // namespace misfit

@@ -92,8 +92,9 @@ std::string name_of_another(const ModelRequest& request, const EffectSpec& spec)
   return name;
 }
 
-/// The request with the effect; coefficients that default to curves are numbers.
-ModelRequest with_effect(const ModelRequest& request, const Effect& effect, const Roles& roles) {
+/// The request with the effect; coefficients that default to curves are numbers, as the formula reads them (C/sin where one enters over a
+/// sine).
+ModelRequest with_effect(const ModelRequest& request, const Effect& effect, const Roles& roles, const SystemSpec& system) {
   ModelRequest out = request;
   out.effects.push_back({name_of_another(request, effect.spec()), effect.spec().key, roles, {}});
   for (const auto& c : effect.spec().coefficients) {
@@ -101,7 +102,8 @@ ModelRequest with_effect(const ModelRequest& request, const Effect& effect, cons
     ParameterRequest number;
     number.value = 0.0;
     number.free = true;
-    out.parameters[c.name] = number;
+    const auto renamed = system.coefficient_names.find(c.name);
+    out.parameters[out.effects.back().name + "." + (renamed == system.coefficient_names.end() ? c.name : renamed->second)] = number;
   }
   return out;
 }
@@ -214,7 +216,7 @@ std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate,
   CandidateModel out;
   out.effect = effect.spec().key;
   out.roles = roles;
-  out.request = with_effect(request, effect, roles);
+  out.request = with_effect(request, effect, roles, estimate.model.system->spec());
   try {
     out.model = assemble(out.request, registry);
   } catch (const InputError&) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 #include "misfit/math/chirp.h"
@@ -14,6 +15,29 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
 double length_of(const std::vector<double>& t) { return t.empty() ? 0.0 : t.back() - t.front(); }
+
+/// From the first sample of any experiment to the last of any.
+double span_of(const SampleTimes& times) {
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const auto& t : times) {
+    if (t.empty()) continue;
+    first = std::min(first, t.front());
+    last = std::max(last, t.back());
+  }
+  return last - first;
+}
+
+double even_length(const SampleTimes& times) {
+  double count = 0.0, sum = 0.0, squares = 0.0;
+  for (const auto& t : times) {
+    for (const double now : t) sum += now;
+    count += static_cast<double>(t.size());
+  }
+  for (const auto& t : times) {
+    for (const double now : t) squares += std::pow(now - sum / count, 2);
+  }
+  return std::sqrt(12.0 * squares / count);
+}
 
 /// Places of an experiment's samples among equal steps.
 struct Even {
@@ -81,8 +105,11 @@ FrequencyGrid frequency_grid(const SampleTimes& times, double from, double to, s
   const auto longest =
       std::max_element(times.begin(), times.end(), [](const auto& a, const auto& b) { return length_of(a) < length_of(b); });
   if (longest == times.end() || !(length_of(*longest) > 0.0)) return grid;
-  grid.step = 1.0 / (4.0 * length_of(*longest));
-  grid.first = std::max(from, 2.0 * grid.step);  // half a period in the record is no line but a drift
+  constexpr double furthest_apart = 64.0;  // lengths of the longest: clocks that differ by more than that share no phase
+  const double span = std::min(span_of(times), furthest_apart * length_of(*longest));
+  grid.step = 1.0 / (4.0 * span);
+  grid.even_length = std::min(even_length(times), std::sqrt(3.0) * span);  // two short ones at both ends have that
+  grid.first = std::max(from, 0.5 / length_of(*longest));                  // half a period in the record is no line but a drift
   grid.wanted = std::min(to, 0.45 * static_cast<double>(longest->size()) / length_of(*longest));
   std::size_t uneven = 0;
   for (const auto& t : times) {

@@ -11,15 +11,18 @@ struct FrequencyGrid {
   double first = 0.0, step = 0.0;
   std::size_t count = 0;
   double wanted = 0.0;  ///< the highest that was asked for: above the last one where the scan is cut short [Hz]
+  /// Length of one recording of even density whose lines are as narrow as those of all experiments together, √(12 var t) [s].
+  double even_length = 0.0;
   [[nodiscard]] double at(std::size_t f) const { return first + static_cast<double>(f) * step; }
 };
 
 /// Sampling times of each experiment [s], rising; series hold the experiments one behind the other.
 using SampleTimes = std::vector<std::vector<double>>;
 
-/// Frequencies from `from` to `to` in steps of half the width of a line in the longest experiment, no lower than half a period in it, no
-/// higher than 0.45 of its sampling rate. Fewer where samples that are not evenly spaced make more than some 10 s of work for `series`
-/// series: then only the lower ones.
+/// Frequencies from `from` to `to`, no lower than half a period in the longest experiment, no higher than 0.45 of its sampling rate, in
+/// steps of half the width of a line in all of them: 1/(4T), T from the first sample of any to the last of any, at most 64 times the
+/// longest. A line has one phase in all, and parts of one recording with a gap between them show it as narrow fringes. Fewer where samples
+/// that are not evenly spaced make more than some 10 s of work for `series` series: then only the lower ones.
 [[nodiscard]] FrequencyGrid frequency_grid(const SampleTimes& times, double from, double to, std::size_t series);
 
 /// |Σ_k λ_k exp(2πi f t_k)|² at the frequencies of the grid: by fast transforms over each experiment that is evenly sampled, be it with

@@ -57,8 +57,14 @@ void free_and_refit(const RefitWork& work, HeldParameter& held) {
   p.free = true;
   p.value = std::clamp(held.wanted, std::min(p.lower, held.value), std::max(p.upper, held.value));
   try {
-    const FilterEstimate freed =
-        estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options_like(work.without, work.threads));
+    const auto estimated = [&] {
+      return estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options_like(work.without, work.threads));
+    };
+    FilterEstimate freed = estimated();
+    if (!freed.converged || freed.objective < work.without.objective) {  // a start below which no search ends
+      p.value = held.value;
+      freed = estimated();
+    }
     const int place = freed.model.find_parameter(held.name);
     const auto sigma = standard_error_of(freed.model, freed.covariance, place);
     if (!freed.converged || !sigma) return;
@@ -74,10 +80,13 @@ std::vector<std::string> held_in_words(const RefitWork& work, const ScoreTest& s
   constexpr double about_as_much = 0.8;
   std::vector<HeldParameter> held = held_parameters(work.without, score);
   const double tests = search.families + static_cast<double>(held.size());
-  std::erase_if(held, [&](const HeldParameter& h) {
-    return sidak(h.p_value, tests) >= search.p_accept || h.predicted_drop < about_as_much * search.best_predicted;
-  });
-  if (!held.empty()) free_and_refit(work, held.front());
+  const auto refused = [&](const HeldParameter& h) { return sidak(h.p_value, tests) >= search.p_accept; };
+  std::erase_if(held, [&](const HeldParameter& h) { return refused(h) || h.predicted_drop < about_as_much * search.best_predicted; });
+  while (!held.empty()) {
+    free_and_refit(work, held.front());
+    if (!refused(held.front())) break;
+    held.erase(held.begin());
+  }
   std::vector<std::string> out;
   for (const HeldParameter& h : held) out.push_back(in_words(h, sidak(h.p_value, tests)));
   return out;

@@ -115,12 +115,12 @@ std::vector<std::vector<double>> cells_of(const FilterEstimate& estimate, const 
   return out;
 }
 
-/// Independent lines in a scan over `steps` of 1/(4T), as far as the tail of its largest chi² is concerned: 1.02 Δf T √(chi²/2), which
-/// grows with the height since a high line is a narrow one (Baluev, Mon. Not. R. Astron. Soc. 385 (2008) 1279: Rice's formula for a
-/// recording of even density); never below the 2 Δf T of a line as wide as two steps.
-double independent_frequencies(std::size_t steps, double chi2) {
-  constexpr double steps_of_1_over_T = 4.0, of_even_density = 1.0233;  // sqrt(4 pi/12)
-  const double lines = static_cast<double>(steps) / steps_of_1_over_T;
+/// Independent lines in a scan of the range Δf, as far as the tail of its largest chi² is concerned: 1.02 Δf T √(chi²/2), which grows with
+/// the height since a high line is a narrow one (Baluev, Mon. Not. R. Astron. Soc. 385 (2008) 1279: Rice's formula, T = √(12 var t), the
+/// length of a recording of even density); never below the 2 Δf T of a line as wide as 1/(2T).
+double independent_frequencies(const FrequencyGrid& grid, double chi2) {
+  constexpr double of_even_density = 1.0233;  // sqrt(4 pi/12)
+  const double lines = static_cast<double>(grid.count) * grid.step * grid.even_length;
   return std::max({of_even_density * lines * std::sqrt(0.5 * std::max(chi2, 0.0)), 2.0 * lines, 1.0});
 }
 
@@ -174,7 +174,7 @@ std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<Can
     if (candidate_models[s].frequency >= 0) {
       best.frequencies = frequencies[s];
       best.cells_effective =
-          independent_frequencies(frequencies[s].count, best.result.chi2) * static_cast<double>(candidate_models[s].cells.size());
+          independent_frequencies(frequencies[s], best.result.chi2) * static_cast<double>(candidate_models[s].cells.size());
     }
     if (!best.runs || best.result.dof == 0) return;
     constexpr double max_p_refined = 0.1;

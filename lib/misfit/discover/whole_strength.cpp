@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "misfit/core/lists.h"
@@ -16,14 +17,14 @@ class InputGain {
  public:
   struct Place {
     int input, port;
+    double step;  ///< of the input, for differences on both sides
   };
   InputGain(const Model& model, Place place) : evaluator_(model), system_(*model.system), values_(model.values()), place_(place) {}
 
   double at(const Eigen::VectorXd& x, const double* u, double t) {
-    constexpr double step = 1e-4;  // of the input, or of 1 where it is smaller: differences on both sides
     const SystemSpec& spec = system_.spec();
     std::vector<double> input(u, u + spec.inputs.size());
-    const double by = step * std::max(1.0, std::abs(input[place_.input]));
+    const double by = place_.step;
     Eigen::VectorXd above(x.size()), below(x.size());
     input[place_.input] += by;
     evaluator_.rates(x.data(), input.data(), t, above.data());
@@ -46,6 +47,22 @@ class InputGain {
   Place place_;
 };
 
+/// A small share of the range of an input over all experiments, or of its size where it never changes.
+double small_step(const FilterEstimate& estimate, int input) {
+  constexpr double share = 1e-4;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const FilterData& data : estimate.data) {
+    for (std::size_t k = data.first; k < data.signals->samples(); ++k) {
+      const double u = data.inputs.at(k).values[input];
+      if (!std::isfinite(u)) continue;
+      low = std::min(low, u);
+      high = std::max(high, u);
+    }
+  }
+  if (high > low) return share * (high - low);
+  return high == low && high != 0.0 ? share * std::abs(high) : share;
+}
+
 /// Median over the recording; 0: the quantity is no input, or it does not act there.
 double gain_of_input(const FilterEstimate& estimate, const Model& model, int quantity, int port) {
   const SystemSpec& system = model.system->spec();
@@ -53,7 +70,7 @@ double gain_of_input(const FilterEstimate& estimate, const Model& model, int qua
   const int input = model.input_of_quantity(quantity);
   if (input < 0) return 0.0;
   std::vector<double> gains;
-  InputGain gain(model, {input, port});
+  InputGain gain(model, {input, port, small_step(estimate, input)});
   for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
     const FilterTrace& trace = estimate.traces[e];
     const FilterData& data = estimate.data[e];

@@ -140,13 +140,18 @@ void Assembler::check_bounds(const Parameter& p, const Source& where) {
                               with_unit(p.upper, p.unit));
 }
 
-void Assembler::apply_request(Parameter& p) {
-  auto found = request_.parameters.find(p.name);
-  const auto alias = aliases_.find(p.name);
+const ParameterRequest* Assembler::parameter_request(const std::string& name) const {
+  auto found = request_.parameters.find(name);
+  const auto alias = aliases_.find(name);
   if (found == request_.parameters.end() && alias != aliases_.end()) found = request_.parameters.find(alias->second);
-  if (found == request_.parameters.end()) return;
-  used_parameters_.insert(found->first);
-  const ParameterRequest& r = found->second;
+  return found == request_.parameters.end() ? nullptr : &found->second;
+}
+
+void Assembler::apply_request(Parameter& p) {
+  const ParameterRequest* asked = parameter_request(p.name);
+  if (asked == nullptr) return;
+  used_parameters_.insert(asked);
+  const ParameterRequest& r = *asked;
   if (r.lower) p.lower = *r.lower;
   if (r.upper) p.upper = *r.upper;
   if (r.value) p.value = *r.value;
@@ -168,7 +173,7 @@ void Assembler::check_everything_used() const {
   for (const auto& list : names_) curves.insert(curves.end(), list.begin(), list.end());
   for (const auto& curve : model_.curves) names.push_back(curve.name);
   for (const auto& [name, request] : request_.parameters) {
-    if (!used_parameters_.contains(name))
+    if (!used_parameters_.contains(&request))
       throw InputError(request.where, "[parameters]: the model has no parameter '" + shown(name) + "'" + suggest(name, names));
   }
   for (const auto& [name, request] : request_.curves) {

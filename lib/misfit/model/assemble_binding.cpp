@@ -138,7 +138,10 @@ BoundCoefficient Assembler::bind_coefficient(const std::string& name, const Coef
   if (spec.shared) return {};  // see share_coefficients()
   const auto curve = curve_request(name, spec, request);
   if (curve) return {-1, add_curve(name, spec, *curve, request, kind)};
-  if (spec.over_sine) throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"QUANTITY\" }");
+  // In a study a number would be taken for the coefficient; of an effect that no file has (a candidate of discovery) it is C/sin, as read.
+  const bool as_read = request.where.file.empty() && is_over_sine(spec, find_quantity(spec.curve_of));
+  if (spec.over_sine && !as_read)
+    throw InputError(request.where, name + " must be a curve: give [curves] " + name + " = { of = \"QUANTITY\" }");
   Parameter p = as_parameter(name, spec);
   apply_request(p);
   model_.parameters.push_back(p);
@@ -160,6 +163,11 @@ Parameter Assembler::as_parameter(const std::string& name, const CoefficientSpec
   return p;
 }
 
+bool Assembler::is_over_sine(const CoefficientSpec& spec, int quantity) const {
+  const bool own = quantity >= 0 && quantity < int_size(system().quantities);
+  return spec.over_sine && own && !system().quantities[quantity].carries_sign;
+}
+
 int Assembler::add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by,
                          PortKind kind) {
   used_curves_.insert(name);
@@ -174,9 +182,8 @@ int Assembler::add_curve(const std::string& name, const CoefficientSpec& spec, c
                                         suggest(request.of, quantity_names()));
   }
   check_order(request.where, "effect '" + shown(by.name) + "'", request.of, curve.quantity, kind);
-  const bool own = curve.quantity < int_size(system().quantities);
   curve.of_unit = unit_of_quantity(curve.quantity);
-  curve.over_sine = spec.over_sine && own && !system().quantities[curve.quantity].carries_sign;
+  curve.over_sine = is_over_sine(spec, curve.quantity);
   curve.roughness = request.roughness;
   curve.scale = spec.scale;
   try {

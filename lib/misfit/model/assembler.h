@@ -31,6 +31,8 @@ class Assembler {
   void add_noise();
   void add_constants();
   static void check_bounds(const Parameter& p, const Source& where);
+  /// Of that name, or of what else a study may call it; nullptr: nothing is asked.
+  const ParameterRequest* parameter_request(const std::string& name) const;
   void apply_request(Parameter& p);
   /// Bare names where unique, EFFECT.NAME where two effects of the model, or an effect and the system, would share one; a system may
   /// rename.
@@ -82,6 +84,8 @@ class Assembler {
   int bind_constant(const EffectRequest& request, const std::string& name) const;
   BoundCoefficient bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request, PortKind kind);
   Parameter as_parameter(const std::string& name, const CoefficientSpec& spec) const;
+  /// Does the formula read it divided by the sine of this quantity?
+  bool is_over_sine(const CoefficientSpec& spec, int quantity) const;
   int add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by, PortKind kind);
   /// One parameter per spline coefficient. What [parameters] says of the curve holds for each: they sum to one, so bounds on them are
   /// bounds on the curve.
@@ -94,7 +98,8 @@ class Assembler {
   Model model_;
   std::vector<std::vector<std::string>> names_;
   std::map<std::string, std::string> aliases_;  // name in the model → what a study may call it as well
-  std::set<std::string> used_parameters_, used_curves_;
+  std::set<const ParameterRequest*> used_parameters_;
+  std::set<std::string> used_curves_;
   std::map<std::string, std::string> role_units_;  // of the effect being bound
 };
 

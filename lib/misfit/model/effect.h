@@ -61,9 +61,9 @@ struct ScanSpec {
   double from = 0.0, to = 0.0;  ///< [unit], or shares of what `over` names
   int count =
       0;  ///< values, ends included; −1: a frequency [Hz], steps of 1/(4T); 0: not scanned: allowed for fixed and shared shapes only
-  /// What `from` and `to` are shares of, for generic effects, which know no sizes beforehand. "level" (a role): of its operating range, 0
-  /// its lower, 1 its upper end; "|level|": of its largest size; "step": of the sampling interval, in equal ratios. "": plain numbers
-  /// [unit].
+  /// What `from` and `to` are shares of, where sizes are not known beforehand. "level" (a role): of its operating range, 0 its lower, 1 its
+  /// upper end; in equal ratios "|level|": of its largest size, "+-level": of half of its range, for what depends on how far it moves and
+  /// not on where, "step": of the sampling interval, "1/step": of the sampling rate. "": plain numbers [unit].
   const char* over = "";
   /// It is the width over which a corner or a step is rounded, in the quantity that `over` names. It is then scanned and estimated no
   /// narrower than sqrt(π/2) times the filter's standard error of that quantity: the filter linearises at one point, and of a corner that

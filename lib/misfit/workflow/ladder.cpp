@@ -141,8 +141,10 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
 std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
   std::vector<std::string> out;
   for (const auto& [name, e] : from.parameters) {
-    const bool estimated = std::any_of(fit.parameters.begin(), fit.parameters.end(),
-                                       [&, own = name](const auto& p) { return p.first == own || p.first.ends_with("." + own); });
+    const bool estimated = std::any_of(fit.parameters.begin(), fit.parameters.end(), [&, own = name](const auto& p) {
+      const std::string known = p.first.substr(0, p.first.find('['));  // of a curve, whose coefficients are estimated
+      return known == own || known.ends_with("." + own);
+    });
     if (!estimated) out.push_back(name + " is held at " + in_display_unit(e.value, e.unit));
   }
   return join_words(out);

@@ -45,7 +45,7 @@ EffectStart start_found(const Effect& effect, const Candidate& from) {
   EffectStart start{{}, from.free, from.fixed};
   for (const auto& c : effect.spec().coefficients) {
     const bool scanned_shape = c.scan.count != 0 && c.kind == CoefficientKind::shape;
-    if (c.shared || (!scanned_shape && !from.actual_drop)) continue;
+    if (c.shared || c.over_sine || (!scanned_shape && !from.actual_drop)) continue;  // over a sine: a curve, discovery's number is C/sin
     for (const auto& [name, estimate] : from.parameters) {
       if (name == c.name || name.ends_with(std::string(".") + c.name)) start.values[c.name] = estimate.value;
     }

@@ -245,8 +245,7 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
   for (std::size_t e = 0; e < estimate.data.size(); ++e) {
     const Signals& signals = *estimate.data[e].signals;
     const std::optional<Gaps> gaps = gaps_of(estimate.data[e], estimate.traces[e]);
-    if (!gaps) return;
-    if (gaps->missing == 0) continue;
+    if (!gaps || gaps->missing == 0) continue;
     const auto missing = static_cast<double>(gaps->missing);
     fit.facts["gaps: " + signals.name] = std::to_string(gaps->missing) + " samples (" +
                                          format_value(100.0 * missing / static_cast<double>(signals.samples())) +
@@ -257,6 +256,17 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
                            " missing samples the motion is predicted beyond 99 % of what was measured (it left the picture): extreme "
                            "motion is under-represented");
   }
+}
+
+/// Where the study has one initial state for all experiments.
+void say_that_starts_are_not_shared(const FilterEstimate& estimate, Fit& fit) {
+  std::vector<std::string> shared;
+  for (const StateSpec& state : estimate.model.state_specs) {
+    if (state.initial == Initial::shared) shared.push_back(state.name);
+  }
+  const auto begins = [](const FilterData& data) { return !data.signals->after_gap; };
+  if (shared.empty() || std::count_if(estimate.data.begin(), estimate.data.end(), begins) < 2) return;
+  fit.facts["shared initial states"] = join_words(shared) + ": of each experiment its own here, as uncertain as its motion is wide";
 }
 
 /// In the free parameters and, where they are estimated together, the noise. The estimate is a maximum: there the data's slope is minus
@@ -310,10 +320,12 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
   }
 }
 
-/// What is estimated beside the free parameters: initial states of the system in every experiment, and the noise.
+/// What is estimated beside the free parameters: initial states of the system in every experiment, but for known ones, and the noise.
 double unknowns_beside_parameters(const FilterEstimate& estimate) {
-  const std::size_t states = estimate.model.system_states() * estimate.data.size();
-  return static_cast<double>(states + estimate.noise_fit.logs.size());
+  double states = 0.0;
+  for (const FilterData& data : estimate.data)
+    states += static_cast<double>((data.covariance.diagonal().head(estimate.model.system_states()).array() > 0.0).count());
+  return states + static_cast<double>(estimate.noise_fit.logs.size());
 }
 
 /// Measurements in the likelihood, and how many of them are left when everything estimated is taken off.
@@ -388,6 +400,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);
+  say_that_starts_are_not_shared(estimate, fit);
   test_innovations(estimate, fit);
   if (!estimate.integration.empty()) fit.facts["integration"] = estimate.integration;
   for (const auto& data : estimate.data) {

@@ -74,7 +74,10 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   if (known == states.ok.end())
     throw RunError("experiment '" + signals.name + "': no sample at which the states of system '" + model.model.system->spec().key +
                    "' can be read from the channels");
-  out.first = known - states.ok.begin();
+  const Eigen::Index shown_at = known - states.ok.begin();
+  const auto& specs = model.model.state_specs;
+  const auto is_known = [&](const StateSpec& state) { return state.initial == Initial::fixed && !signals.after_gap; };
+  out.first = std::any_of(specs.begin(), specs.end(), is_known) ? 0 : shown_at;
   out.use.assign(signals.samples() * ny, SampleRole::none);
   for (std::size_t i = out.first; i < signals.samples(); ++i) {
     for (std::size_t o = 0; o < ny; ++o) {
@@ -82,12 +85,15 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
       out.use[i * ny + o] = i < signals.exclude ? SampleRole::update : signals.held_out(i) ? SampleRole::validation : SampleRole::counted;
     }
   }
-  out.start = states.x.row(out.first).transpose();
+  out.start = states.x.row(shown_at).transpose();
   out.covariance = Eigen::MatrixXd::Zero(model.model.states(), model.model.states());
-  const auto& specs = model.model.system->spec().states;
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const auto state = static_cast<Eigen::Index>(i);
-    const double departure = states.shown[state] ? departure_from_start(states, signals, out.first, state) : 0.0;
+    if (is_known(specs[i])) {
+      out.start[state] = specs[i].start;
+      continue;
+    }
+    const double departure = states.shown[state] ? departure_from_start(states, signals, shown_at, state) : 0.0;
     out.covariance(state, state) = std::pow(departure > 0.0 ? departure : specs[i].scale, 2);
   }
   begin_own_states(model, out);

@@ -28,10 +28,10 @@ struct FilterData {
   const Signals* signals = nullptr;
   InputTable inputs;
   std::vector<SampleRole> use;  ///< samples × channels
-  std::size_t first = 0;        ///< first sample at which all states can be read
+  std::size_t first = 0;        ///< first sample at which all states can be read; 0 where a state is known there (Initial::fixed)
   /// Model states there and how uncertain they are, force states excluded (0). A recording begins in the middle of a motion, and what the
   /// channels show may lag behind the state or be off: the sigma of a state that is shown is its RMS departure from there, of another its
-  /// typical size. Memories of effects: own_states.h.
+  /// typical size, of one that the study knows 0. Memories of effects: own_states.h.
   Eigen::VectorXd start;
   Eigen::MatrixXd covariance;
   std::shared_ptr<const ReconstructedStates> read = {};  ///< the system's states as the channels show them

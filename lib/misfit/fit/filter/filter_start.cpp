@@ -42,20 +42,40 @@ RateSizes rate_sizes(const FilterModel& model, const FilterData& data, const Rec
   return out;
 }
 
+/// |dx'/dF| of each system state and force, the largest of a few samples: it may depend on the state and on inputs.
+Eigen::MatrixXd largest_gains(const FilterModel& model, const FilterData& data) {
+  constexpr std::size_t samples = 20;
+  Evaluator evaluator(model.model);
+  const int n = evaluator.states(), system = model.model.system_states();
+  std::vector<double> dx(n), D(n * kRowStride);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(system, std::ssize(model.force_states));
+  Eigen::VectorXd x = data.start;
+  const std::size_t last = data.signals->samples(), stride = std::max<std::size_t>((last - data.first) / samples, 1);
+  for (std::size_t k = data.first; k < last; k += stride) {
+    const auto row = static_cast<Eigen::Index>(k);
+    if (k > data.first && !(data.read && data.read->ok[k])) continue;
+    if (k > data.first) x.head(system) = data.read->x.row(row).head(system).transpose();
+    Slots slots;
+    evaluator.linearise_rates({x.data(), data.inputs.at(k), data.signals->t[k]}, slots, dx.data(), D.data());
+    for (Eigen::Index f = 0; f < out.cols(); ++f) {
+      for (int i = 0; i < system; ++i) {
+        const double gain = std::abs(D[i * kRowStride + model.force_states[f]]);
+        if (std::isfinite(gain)) out(i, f) = std::max(out(i, f), gain);
+      }
+    }
+  }
+  return out;
+}
+
 /// Size of a random force that alone would cause the accelerations: the largest RMS of x' over |dx'/dF|, over the states on which a force
 /// of the group acts; of those that channels show, if there are any. 1 where it acts on none.
 double force_size(const FilterModel& model, int group, const FilterData& data, const RateSizes& rates) {
-  Evaluator evaluator(model.model);
-  const int n = evaluator.states();
-  std::vector<double> dx(n), D(n * kRowStride);
-  Slots slots;
-  evaluator.linearise_rates({data.start.data(), data.inputs.at(data.first), data.signals->t[data.first]}, slots, dx.data(), D.data());
+  const Eigen::MatrixXd gains = largest_gains(model, data);
   double shown = 0.0, hidden = 0.0;
   for (std::size_t force = 0; force < model.force_states.size(); ++force) {
-    const int f = model.force_states[force];
     if (model.force_group[force] != group) continue;
     for (int i = 0; i < model.model.system_states(); ++i) {  // not the own states of effects
-      const double gain = std::abs(D[i * kRowStride + f]);
+      const double gain = gains(i, static_cast<Eigen::Index>(force));
       if (model.kind[i] != 1 || !(gain > 0.0)) continue;
       double& size = rates.shown[i] ? shown : hidden;
       size = std::max(size, rates.rms[i] / gain);

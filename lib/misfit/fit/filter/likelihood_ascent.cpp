@@ -210,6 +210,7 @@ void LikelihoodAscent::damped_step(const Eigen::MatrixXd& precision, const Eigen
 
 bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
   const FilterNoise before = out.noise;
+  const NoiseFit fit_before = out.noise_fit;
   const std::vector<double> logs = pack(before, out.model.system->spec(), out.around).value;
   const double then = objective;
   if (!std::isfinite(fit.minus_log_density)) {
@@ -224,9 +225,10 @@ bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
     return true;
   }
   out.noise = before;
+  out.noise_fit = fit_before;
   out.noise_fit.logs = logs;
   out.forced.set_force_time(out.noise.force_time);
-  linearise();
+  if (linearise()) describe_noise();
   return false;
 }
 
@@ -272,11 +274,14 @@ bool LikelihoodAscent::return_to(const Point& point) {
   out.forced.set_force_time(out.noise.force_time);
   remembered_.emplace(point);
   if (!linearise()) return false;
-  if (out.noise_fit.at_bound.empty()) {
-    out.noise_fit = fit_noise(runs(), out.noise, {out.around, threads_, 0});
-    out.noise_fit.information = noise_information(runs(), out.noise_fit.logs, out.around, threads_);
-  }
+  describe_noise();
   return true;
+}
+
+void LikelihoodAscent::describe_noise() {
+  if (!out.noise_fit.at_bound.empty()) return;
+  out.noise_fit = fit_noise(runs(), out.noise, {out.around, threads_, 0});
+  out.noise_fit.information = noise_information(runs(), out.noise_fit.logs, out.around, threads_);
 }
 
 bool LikelihoodAscent::begin_with(const FilterNoise& noise) {

@@ -61,6 +61,8 @@ class LikelihoodAscent {
   [[nodiscard]] Point here() const { return {theta, objective, out.noise, out.noise_fit, out.penalties}; }
   /// With runs and information of the noise there, whatever was going on; it is then the point to return to. False: it cannot be run.
   bool return_to(const Point& point);
+  /// Bounds and information of the noise as it is, where no fit of it has been taken.
+  void describe_noise();
   /// False if the model cannot be run with it: all is as before.
   bool begin_with(const FilterNoise& noise);
   /// The present point is the one to return to; every step that has risen does this by itself.

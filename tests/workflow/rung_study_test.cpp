@@ -1,0 +1,55 @@
+// The line that a new rung's study has of an effect that discovery found.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <misfit_models_registry.h>
+
+#include "misfit/workflow/ladder.h"
+#include "tests/core/temporary_folder.h"
+
+namespace misfit {
+namespace {
+
+/// Its number in discovery is C_n/sin(alpha_T), which is no start of C_n.
+TEST(RungStudy, ACoefficientThatEntersOverASineIsACurveThere) {
+  TemporaryFolder folder;
+  folder.write("d.csv", "t[s],P_y[px],P_z[px]\n0,100,200\n0.02,101,201\n0.04,102,202\n0.06,103,203\n0.08,104,204\n");
+  folder.write("study.toml", R"toml([study]
+name = "flight"
+question = "What is missing?"
+methods = ["filter_error"]
+seed = 1
+[system]
+kind = "parachute_spherical"
+[geometry]
+D = "1.5816 m"
+S = "1.9554 m^2"
+R = "3.447 m"
+R_cp = "3.15 m"
+m = "0.206 kg"
+m_a = "0.294 kg"
+qbar = "736 Pa"
+V = "35.1 m/s"
+l_b = "5.69 m"
+l_s = "5.61 m"
+h_c = "0.1524 m"
+K = "133.86 px/m"
+[[experiment]]
+name = "flight"
+data = "d.csv"
+[effects]
+gravity = {}
+static_moment = {}
+pitch_damping = {}
+)toml");
+  Registry registry;
+  misfit_models_register(registry);
+  const Session session({.study = (folder.path() / "study.toml").string(), .out = (folder.path() / "out").string()}, registry);
+  Candidate found;
+  found.effect = "side_moment";
+  found.actual_drop = 100.0;
+  found.parameters["C_n"] = {0.0115, 0.002, "-"};
+  EXPECT_THAT(study_with_effect(session, "side_moment", found, folder.path()), testing::HasSubstr("\nside_moment = {}\n"));
+}
+
+}  // namespace
+}  // namespace misfit
