@@ -162,6 +162,19 @@ TEST(SignalsFrom, IsolatedWildSamplesAreSetAsideAndSaid) {
   EXPECT_TRUE(said);
 }
 
+TEST(SignalsFrom, AFlickerOfTheLastDigitOfAStillChannelIsNotAnOutlier) {
+  Table table = recording(400);
+  for (std::size_t i = 0; i < 400; ++i) table.columns[1].values[i] = i == 120 ? 12.2 : i % 50 == 30 ? 12.1 : 12.0;
+  const auto missing = [&] {
+    const Signals s = signals_from(table, eq_8(), plain());
+    const auto& values = s.measured.front().values;
+    return std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+  };
+  EXPECT_EQ(missing(), 0);
+  table.columns[1].values[200] = 30.0;
+  EXPECT_EQ(missing(), 1);
+}
+
 TEST(SignalsFrom, ABurstAfterRestAndAJumpAreMotionNotWildSamples) {
   Table table = recording(400);
   for (std::size_t i = 0; i < 400; ++i) {

@@ -50,15 +50,25 @@ std::size_t bridge(const std::vector<double>& t, std::vector<double>& y) {
   return filled;
 }
 
+/// The smallest difference above 0 of neighbours: the last digit, where values are rounded coarsely; 0 if nothing changes.
+double smallest_step(const std::vector<double>& y) {
+  double smallest = 0.0;
+  for (std::size_t i = 1; i < y.size(); ++i) {
+    const double step = std::abs(y[i] - y[i - 1]);
+    if (step > 0.0 && std::isfinite(step) && (smallest == 0.0 || step < smallest)) smallest = step;
+  }
+  return smallest;
+}
+
 /// Sets isolated outliers to missing and returns their number. Outlier: more than 15 robust sigmas from the cubic through two neighbours on
 /// either side, and more than five times the largest difference of these neighbours, so that a burst or a jump of the motion itself is not
-/// rejected.
+/// rejected. The sigma is at least that of rounding to the smallest step between neighbours: a flicker of the last digit is not rejected.
 std::size_t reject_isolated_outliers(std::vector<double>& y) {
   constexpr double max_sigmas = 15.0, min_times_neighbours = 5.0;
   const auto distance = [&](std::size_t i) { return y[i] - (4.0 * (y[i - 1] + y[i + 1]) - y[i - 2] - y[i + 2]) / 6.0; };
   std::vector<double> distances;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) distances.push_back(distance(i));
-  const double limit = max_sigmas * mad_sigma(distances);
+  const double limit = max_sigmas * std::max(mad_sigma(distances), smallest_step(y) / std::sqrt(12.0));
   std::vector<std::size_t> outliers;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) {
     const double between = std::max({std::abs(y[i - 2] - y[i - 1]), std::abs(y[i - 1] - y[i + 1]), std::abs(y[i + 1] - y[i + 2])});
