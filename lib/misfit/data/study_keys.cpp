@@ -254,7 +254,7 @@ KeyGroup curves_group() {
   return {"curves.NAME", "A coefficient as a function of a quantity: a cubic B-spline with a roughness penalty.",
      {{.name = "of", .otherwise = "that of a coefficient that is a curve by itself, as C_m",
        .meaning = "Quantity that it depends on, as alpha_T; needed with knots or a table."},
-      {.name = "knots", .type = Type::numbers, .unit = "deg for angles, else that of the quantity", .fallback = "\"auto\"",
+      {.name = "knots", .type = Type::numbers, .unit = "of the quantity as shown: deg for angles, deg/s for their rates", .fallback = "\"auto\"",
        .form = "\"auto\" or list of numbers",
        .meaning = "Breakpoints of the spline, increasing, at least two; auto: 17 over the range that the data visit."},
       {.name = "roughness", .type = Type::number, .unit = "of quantity^3/curve^2", .fallback = "\"auto\"", .least = 0.0,

@@ -22,8 +22,9 @@ struct RigEntry {
 };
 [[nodiscard]] std::span<const RigEntry> rig_entries();
 
-/// Names, units and bounds of [system], [geometry], [effects], [parameters] and [curves] against the registry. Knots in degrees become
-/// radians where the quantity is an angle. InputError with file, line and nearest name.
+/// Names, units and bounds of [system], [geometry], [effects], [parameters] and [curves] against the registry. Knots without a unit
+/// are taken in the one that is shown (display_unit()). What an effect's line says of a parameter counts where [parameters] does not say
+/// it. InputError with file, line and nearest name.
 [[nodiscard]] StudyModel read_model(const Study& study, const Registry& registry);
 
 /// The same request in the system's regression form (SystemSpec::regression): for sliding_bin. Curves keep their places under the names of

@@ -100,20 +100,18 @@ class Resolved {
     if (p.prior_sigma) set("sigma", toml_number(*p.prior_sigma));
   }
 
-  /// In degrees for an angle; in radians where no number of degrees reads back to it.
-  static std::string knot_text(double knot, bool angle) {
-    if (!angle) return toml_number(knot);
-    const double near = knot / kDegree;
-    for (const double degrees : {near, std::nextafter(near, INFINITY), std::nextafter(near, -INFINITY)}) {
-      if (degrees * kDegree == knot) return toml_number(degrees);
+  /// In the unit that is shown, as a bare number is read; with the SI unit where no such number reads back to it.
+  static std::string knot_text(double knot, const std::string& unit) {
+    const double shown = convert_difference(1.0, display_unit(unit), unit), near = knot / shown;
+    for (const double bare : {near, std::nextafter(near, INFINITY), std::nextafter(near, -INFINITY)}) {
+      if (shown * bare == knot) return toml_number(bare);
     }
-    return toml_string(toml_number(knot) + " rad");
+    return toml_string(toml_number(knot) + " " + plain_si(unit));
   }
 
   void set_curve(const Curve& curve) {
-    const bool angle = curve.of_unit == "rad";  // else SI, which is what is shown
     std::vector<std::string> knots;
-    for (const double knot : curve.spline.breakpoints()) knots.push_back(knot_text(knot, angle));
+    for (const double knot : curve.spline.breakpoints()) knots.push_back(knot_text(knot, curve.of_unit));
     document_.set({"curves", curve.name, "of"}, toml_string(curve.of));
     document_.set({"curves", curve.name, "knots"}, toml_list(knots));
     document_.set({"curves", curve.name, "roughness"}, curve.roughness ? toml_number(*curve.roughness) : "\"auto\"");
