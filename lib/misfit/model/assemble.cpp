@@ -72,6 +72,13 @@ std::map<std::string, std::string> Assembler::parameter_units() {
   return units;
 }
 
+std::map<std::string, std::string> Assembler::parameter_names() {
+  std::map<std::string, std::string> names;
+  for (const auto& [name, unit] : parameter_units()) names[name] = name;
+  for (const auto& [name, alias] : aliases_) names[alias] = name;
+  return names;
+}
+
 void Assembler::add_states() {
   model_.state_specs = system().states;
   std::vector<std::string> names;
@@ -140,10 +147,14 @@ void Assembler::check_bounds(const Parameter& p, const Source& where) {
                               with_unit(p.upper, p.unit));
 }
 
+std::map<std::string, ParameterRequest>::const_iterator Assembler::find_request(const std::string& name) const {
+  const auto found = request_.parameters.find(name);
+  const auto alias = aliases_.find(name);
+  return found == request_.parameters.end() && alias != aliases_.end() ? request_.parameters.find(alias->second) : found;
+}
+
 void Assembler::apply_request(Parameter& p) {
-  auto found = request_.parameters.find(p.name);
-  const auto alias = aliases_.find(p.name);
-  if (found == request_.parameters.end() && alias != aliases_.end()) found = request_.parameters.find(alias->second);
+  const auto found = find_request(p.name);
   if (found == request_.parameters.end()) return;
   used_parameters_.insert(found->first);
   const ParameterRequest& r = found->second;
@@ -206,6 +217,10 @@ std::map<std::string, std::string> curves_without_knots(const ModelRequest& requ
 
 std::map<std::string, std::string> parameter_units(const ModelRequest& request, const Registry& registry) {
   return Assembler(request, registry).parameter_units();
+}
+
+std::map<std::string, std::string> parameter_names(const ModelRequest& request, const Registry& registry) {
+  return Assembler(request, registry).parameter_names();
 }
 
 }  // namespace misfit

@@ -89,7 +89,7 @@ std::vector<std::string> Assembler::owned_names() const {
 
 std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec, const EffectRequest& by) const {
   const auto found = request_.curves.find(name);
-  const auto number = request_.parameters.find(name);
+  const auto number = find_request(name);
   const bool asked = found != request_.curves.end(), is_number = number != request_.parameters.end() && number->second.value;
   if (!asked && (spec.curve_of[0] == '\0' || is_number)) return std::nullopt;
   CurveRequest request = asked ? found->second : CurveRequest{};

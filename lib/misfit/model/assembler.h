@@ -23,6 +23,7 @@ class Assembler {
   Model run();
   std::map<std::string, std::string> curves_without_knots();
   std::map<std::string, std::string> parameter_units();
+  std::map<std::string, std::string> parameter_names();
 
  private:
   const SystemSpec& system() const { return model_.system->spec(); }
@@ -31,6 +32,8 @@ class Assembler {
   void add_noise();
   void add_constants();
   static void check_bounds(const Parameter& p, const Source& where);
+  /// By its name in the model or the other one that a study may use; end(): nothing is said of it.
+  std::map<std::string, ParameterRequest>::const_iterator find_request(const std::string& name) const;
   void apply_request(Parameter& p);
   /// Bare names where unique, EFFECT.NAME where two effects of the model, or an effect and the system, would share one; a system may
   /// rename.

@@ -76,8 +76,9 @@ class Resolved {
                     toml_list({toml_number(last.validation_from), toml_number(std::min(last.validation_to, last.t.back() + 1.0))}));
   }
 
-  /// Where the study writes it: under its name, or, without quotation marks, under the parts of a name with a point.
-  TomlPath path_of(const std::string& parameter) const {
+  /// Where the study writes it: under a name that it has for it, or, without quotation marks, under the parts of a name with a point.
+  TomlPath path_of(const std::string& in_model) const {
+    const std::string parameter = name_in_study(session_.study, names_, in_model);
     TomlPath path{"parameters", parameter};
     for (std::size_t point = parameter.find('.'); point != std::string::npos; point = parameter.find('.', point + 1)) {
       const TomlPath nested{"parameters", parameter.substr(0, point), parameter.substr(point + 1)};
@@ -143,6 +144,7 @@ class Resolved {
 
   const Session& session_;
   const Prepared& prepared_;
+  std::map<std::string, std::string> names_ = parameter_names(prepared_.request, session_.registry);
   TomlDocument document_;
   std::map<TomlPath, std::string> comments_;
 };
