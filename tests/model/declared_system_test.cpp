@@ -3,6 +3,7 @@
 
 #include "misfit/core/units.h"
 #include "misfit/model/evaluator.h"
+#include "tests/core/temporary_folder.h"
 #include "tests/model/declared_texts.h"
 
 namespace misfit {
@@ -163,6 +164,58 @@ TEST(AnEffectOnAQuantity, ReachesOutputsThatAreFormulasOfIt) {
   const OutputOfACell out = output_of_a_cell(effect("bias", {{"output", "drop"}}), {{"offset", 0.1}}, {0.3});
   EXPECT_DOUBLE_EQ(out.value, 4.0 - 0.02 * 3.0 - 0.1 - 0.3);
   EXPECT_THAT(out.by, testing::Pointwise(testing::DoubleNear(1e-14), {-1.0, -3.0, -1.0}));
+}
+
+/// Its outputs have the names of a state and of a quantity, and formulas of their own.
+const std::string namesake_text = R"toml(
+[states]
+w = { unit = "V" }
+[parameters]
+k = { unit = "1/s", value = 3.0 }
+g = { unit = "-", value = 2.0 }
+[quantities]
+flow = { unit = "V/s", formula = "k*w" }
+[equations]
+w = "-flow"
+[outputs]
+w = { unit = "V", formula = "g*w" }
+flow = { unit = "V/s", formula = "g*flow" }
+half = { unit = "V", formula = "w/2" }
+)toml";
+
+struct Answer {
+  double dw = 0.0, w = 0.0, flow = 0.0, half = 0.0;
+};
+
+/// Of the system with this effect at w = 0.5 V.
+Answer answer_with(const std::string& text, const EffectRequest& effect, const std::map<std::string, double>& values) {
+  const auto known = registry_with(text);
+  Model model = assemble(request_of("text", {effect}), *known);
+  for (const auto& [name, value] : values) set(model, name, value);
+  Evaluator evaluator(model);
+  const double x[] = {0.5};
+  double dx[1];
+  std::vector<double> y(static_cast<std::size_t>(evaluator.sensor_ports()));
+  evaluator.rates(x, nullptr, 0.0, dx);
+  evaluator.predict(x, nullptr, 0.0, y.data());
+  return {dx[0], y[0], y[1], y[2]};
+}
+
+TEST(AnOutputWithTheNameOfSomethingElse, IsWhatSensorEffectsMean) {
+  const Answer bias = answer_with(namesake_text, effect("bias", {{"output", "flow"}}), {{"offset", 0.25}});
+  EXPECT_DOUBLE_EQ(bias.dw, -1.5) << "the equation is as it was";
+  EXPECT_DOUBLE_EQ(bias.flow, 3.25);
+  const Answer scale = answer_with(namesake_text, effect("sensor_scale", {{"output", "w"}}), {{"scale_error", 0.1}});
+  EXPECT_DOUBLE_EQ(scale.w, 1.1) << "of what is measured, not of the state";
+  const Answer talk = answer_with(namesake_text, effect("cross_talk", {{"output", "half"}, {"other_signal", "w"}}), {{"cross_share", 0.1}});
+  EXPECT_DOUBLE_EQ(talk.half, 0.25 + 0.1 * 1.0);
+}
+
+TEST(AnOutputThatIsTheQuantityOfItsName, IsChangedWithIt) {
+  const std::string text = replaced(replaced(namesake_text, ", formula = \"g*flow\"", ""), "k*w", "g*k*w");
+  const Answer bias = answer_with(text, effect("bias", {{"output", "flow"}}), {{"offset", 0.25}});
+  EXPECT_DOUBLE_EQ(bias.dw, -3.25);
+  EXPECT_DOUBLE_EQ(bias.flow, 3.25);
 }
 
 const std::string turntable_text = R"toml(
@@ -406,6 +459,23 @@ TEST(DeclaredEffects, ErrorsAreWords) {
               HasSubstr("nothing depends on its parameter 'd'"));
   EXPECT_THAT(error(R"toml({ port = "dv/dt", formula = "exp(c)*v*stiffness/damping", parameters = { c = { unit = "-" } } })toml"),
               HasSubstr("switches it off"));
+}
+
+TEST(DeclaredEffects, AreRefusedWhereANameMeansAnOutputAndSomethingElse) {
+  const SystemSpec system = registry_with(namesake_text)->system("text").make({})->spec();
+  const auto error = [&](const std::string& port, const std::string& formula, const std::string& unit) {
+    return message_of<InputError>([&] {
+      static_cast<void>(declared_effect(effect_in_one_line("extra", "{ port = \"" + port + "\", formula = \"" + formula +
+                                                                        "\", parameters = { c = { unit = \"" + unit + "\" } } }"),
+                                        system));
+    });
+  };
+  for (const std::string& message : {error("flow", "c", "V/s"), error("w", "c*w", "-")})
+    EXPECT_THAT(message, AllOf(HasSubstr("study.toml:2"), HasSubstr("is an output with a formula of its own"),
+                               HasSubstr("call the output otherwise")));
+  const auto made = declared_effect(
+      effect_in_one_line("extra", "{ port = \"dw/dt\", formula = \"c*w\", parameters = { c = { unit = \"1/s\" } } }"), system);
+  EXPECT_EQ(made->spec().quantities.size(), 1U) << "the state: forces read no outputs";
 }
 
 TEST(DeclaredEffects, ASigmaIsAPriorAboutTheValueInEveryFit) {

@@ -249,10 +249,18 @@ class Compiler {
       add_quantity(q, quantity_nodes_[i], all);
     }
     spec().quantities = std::move(all);
+    note_namesakes();
     note_ports_in_outputs();
     if (int_size(spec().quantities) + int_size(spec().outputs) > kMaxQuantities)
       throw InputError(d_.where, "states, inputs, quantities and outputs are together too many");
     set_roles(d_, own_ports_);
+  }
+  void note_namesakes() {
+    for (int o = 0; o < int_size(spec().outputs); ++o) {
+      OutputSpec& output = spec().outputs[o];
+      const int same = index_of(spec().quantities, output.name);
+      output.namesake = same >= 0 ? all_quantity_nodes_[same] != output_nodes_[o] : index_of(spec().dynamic_ports, output.name) >= 0;
+    }
   }
   void note_ports_in_outputs() {
     for (int i = 0; i < int_size(spec().quantity_ports); ++i) {

@@ -70,6 +70,8 @@ struct OutputSpec {
   std::string name, unit;
   int observes = -1;   ///< index of the state it is; −1: a function
   double noise = 0.0;  ///< typical white measurement noise [unit], a start only
+  /// Another function than the state, input or quantity of its name, or called as a dynamic port: only roles of sensors mean the output.
+  bool namesake = false;
 };
 
 /// Sensor ports behind the outputs: shifts of the time at which all outputs are taken, and at which one is [s].
