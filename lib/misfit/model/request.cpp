@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -22,10 +23,15 @@ constexpr std::array<RigEntry, 9> entries = {{{"R", &RigGeometry::R},
                                               {"R2", &RigGeometry::R2},
                                               {"R3", &RigGeometry::R3}}};
 
-void read_rig(const config::Section& section, RigGeometry& rig) {
+/// Limits are those of a rig that a camera looks at. A constant of the system that has the name of an entry and another dimension is none.
+void read_rig(const config::Section& section, const SystemSpec& spec, bool camera, RigGeometry& rig) {
   const config::DescribedSection geometry(section, config::group_of(study_keys(), "geometry"));
   for (const auto& entry : entries) {
-    if (const auto number = geometry.number(entry.name)) rig.*entry.field = number->value;
+    const std::string& unit = geometry.description().key(entry.name).unit;
+    const int own = index_of(spec.constants, entry.name);
+    if (own >= 0 && !parse_unit(spec.constants[own].unit).same_dimension(parse_unit(unit))) continue;
+    const auto number = camera ? geometry.number(entry.name) : section.number(entry.name, unit, true);
+    if (number) rig.*entry.field = number->value;
   }
 }
 
@@ -238,7 +244,7 @@ StudyModel read_model(const Study& study, const Registry& registry) {
   const SystemSpec spec = type.make(request.options)->spec();
   check_columns(study, request.system, spec, registry);
   if (study.geometry) {
-    read_rig(*study.geometry, out.rig);
+    read_rig(*study.geometry, spec, study.has_camera, out.rig);
     read_constants(*study.geometry, spec, request);
     study.geometry->finish();
   }
