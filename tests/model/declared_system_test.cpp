@@ -370,6 +370,21 @@ TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of("x = ["), HasSubstr("not valid TOML"));
 }
 
+const Parameter& parameter_of(const Model& model, const std::string& name) {
+  return model.parameters.at(static_cast<std::size_t>(model.find_parameter(name)));
+}
+
+TEST(DeclaredSystems, TheScaleOfAParameterIsItsTypicalSize) {
+  const auto scale = [](const std::string& keys) {
+    const auto known = registry_with(replaced(duffing_text, "unit = \"1/s^2\", value = 10.0", "unit = \"1/s^2\", " + keys));
+    return parameter_of(assemble(request_of("text"), *known), "gain").scale;
+  };
+  EXPECT_EQ(scale("value = 10.0, scale = 0.5"), 0.5);
+  EXPECT_EQ(scale("value = 10.0, sigma = 0.1"), 10.0);
+  EXPECT_EQ(scale("value = 0.0, sigma = 0.1"), 0.1);
+  EXPECT_EQ(scale("value = 0.0"), 1.0);
+}
+
 TEST(DeclaredSystems, SayWhereAFormulaIsNotDefined) {
   const auto known = registry_with(R"toml(
 [states]

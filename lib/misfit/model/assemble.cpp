@@ -12,6 +12,12 @@ namespace {
 
 std::string with_unit(double value, const std::string& unit) { return format_value(value) + (unit == "-" ? "" : " " + plain_si(unit)); }
 
+double typical_size(const ConstantSpec& constant, double value) {
+  if (constant.scale > 0.0) return constant.scale;
+  if (value != 0.0) return std::abs(value);
+  return constant.prior_sigma > 0.0 ? constant.prior_sigma : 1.0;
+}
+
 }  // namespace
 
 Assembler::Assembler(const ModelRequest& request, const Registry& registry) : request_(request), registry_(registry) {
@@ -132,7 +138,7 @@ void Assembler::add_constants() {
     if (constant.prior_sigma > 0.0) p.prior_sigma = constant.prior_sigma;
     if (constant.strength) p.kind = CoefficientKind::strength;
     if (valued) p.value = *asked->second.value;
-    p.scale = p.value != 0.0 ? std::abs(p.value) : 1.0;
+    p.scale = typical_size(constant, p.value);
     const auto sigma = request_.constant_sigmas.find(constant.name);
     if (sigma != request_.constant_sigmas.end()) p.prior_sigma = sigma->second;
     p.prior_mean = p.value;

@@ -64,6 +64,7 @@ struct ConstantSpec {
   bool free = false;         ///< unless a study says otherwise
   double prior_sigma = 0.0;  ///< Gaussian about the value [unit]; 0: no prior
   bool strength = false;     ///< the rates are linear in it: a regression finds it
+  double scale = 0.0;        ///< typical size [unit]; 0: that of the value, else prior_sigma, else 1
 };
 
 struct OutputSpec {
