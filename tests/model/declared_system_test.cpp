@@ -370,6 +370,23 @@ TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of("x = ["), HasSubstr("not valid TOML"));
 }
 
+TEST(DeclaredSystems, AnOutputThatStepsWithAStateIsNoWayToReadIt) {
+  const auto readable = [](const std::string& outputs) {
+    return registry_with(
+               "[states]\nx = { unit = \"V\" }\n[parameters]\nk = { unit = \"1/s\", value = 1 }\n"
+               "[equations]\nx = \"-k*x\"\n[outputs]\n" +
+               outputs)
+        ->system("text")
+        .make({})
+        ->spec()
+        .readable_states;
+  };
+  const std::string line = "y = { unit = \"V\", formula = \"2*x\" }\n";
+  EXPECT_THAT(readable(line), ElementsAre(0));
+  EXPECT_THAT(readable(line + "side = { unit = \"-\", formula = \"if(x > 0, 1, 0)\" }\n"), ElementsAre(0));
+  EXPECT_THAT(readable("side = { unit = \"-\", formula = \"sign(x)\" }\n"), ElementsAre());
+}
+
 const Parameter& parameter_of(const Model& model, const std::string& name) {
   return model.parameters.at(static_cast<std::size_t>(model.find_parameter(name)));
 }

@@ -196,7 +196,9 @@ class Compiler {
       if (state >= 0 || leaf >= n.nx) return;
       state = leaf;
     }
-    if (state < 0 || uses(g().derivatives(node, {g().leaf(state)}).front(), state)) return;
+    if (state < 0) return;
+    const int slope = g().derivatives(node, {g().leaf(state)}).front();
+    if (g().is(slope, 0.0) || uses(slope, state)) return;  // steps of the state, or a curve
     out_->readable.emplace_back(output, state);
     spec().readable_states.push_back(state);
   }
