@@ -370,6 +370,14 @@ TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of("x = ["), HasSubstr("not valid TOML"));
 }
 
+TEST(DeclaredSystems, AStateThatIsTheRateOfAnotherStandsInItsEquation) {
+  const std::string rate = replaced(duffing_text, "unit = \"V/s\", scale", "unit = \"V/s\", rate_of = \"y\", scale");
+  EXPECT_EQ(error_of(rate), "");
+  EXPECT_EQ(error_of(replaced(rate, "y = \"v\"\n", "")), "");
+  EXPECT_THAT(error_of(replaced(rate, "y = \"v\"", "y = \"2*v\"")),
+              AllOf(HasSubstr("text.toml:17:"), HasSubstr("the equation of 'y' is not 'v'"), HasSubstr("take rate_of out")));
+}
+
 TEST(DeclaredSystems, AnOutputThatStepsWithAStateIsNoWayToReadIt) {
   const auto readable = [](const std::string& outputs) {
     return registry_with(

@@ -149,8 +149,21 @@ class Compiler {
       out_->rate_nodes.push_back(g().add(node, g().leaf(n.F(own_ports_ + j))));
       note_inputs(node);
     }
+    check_rates();
     for (std::size_t j = 0; j < states.size(); ++j) {
       if (!kinematic_[j]) spec().force_ports.push_back("d" + states[j].name + "/dt");
+    }
+  }
+
+  void check_rates() {
+    const auto& states = spec().states;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const int of = states[i].rate_of;
+      if (of < 0 || equation_nodes_[of] == state_nodes_[i]) continue;
+      throw InputError(d_.equations[of].syntax.source.where,
+                       "the equation of '" + shown(states[of].name) + "' is not '" + shown(states[i].name) +
+                           "', which says that it is its rate: " + "leave the equation out, or take rate_of out of '" +
+                           shown(states[i].name) + "'");
     }
   }
 
