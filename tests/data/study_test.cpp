@@ -154,6 +154,11 @@ TEST_F(StudyFolder, AParameterOfAnEffectNeedsNoQuotes) {
   expect_parts(error_with("[parameters]\nbearing = { value = 3, friction = { value = 3 } }\n"), {"study.toml:4", "'value'"});
 }
 
+TEST_F(StudyFolder, AParameterOfAnEffectWithQuotesAndWithoutIsRefused) {
+  expect_parts(error_with("[parameters]\n\"bearing.friction\" = { value = 3 }\nbearing.friction.free = false\n"),
+               {"study.toml:", "bearing.friction is there twice"});
+}
+
 TEST_F(StudyFolder, AnUnknownSectionOrKeyNamesTheNearest) {
   expect_parts(error_with("[geometri]\nD = 1\n"), {"study.toml:3:2", "[geometri]", "did you mean 'geometry'", "reference"});
   expect_parts(error_with("[study]\nsede = 1\n"), {"study.toml:4:1", "'sede' in [study]", "did you mean 'seed'"});

@@ -64,6 +64,18 @@ TEST(Binding, AStudyMayCallTheFirstOfAKindByItsBareNameAndAnyByItsEffect) {
   EXPECT_THROW(static_cast<void>(assemble(alone, registry())), InputError);
 }
 
+TEST(Binding, AValueUnderTheEffectsNameTurnsADefaultCurveIntoANumber) {
+  for (const char* name : {"C_mq", "pitch_damping.C_mq"}) {
+    ModelRequest r = parachute(true);
+    r.curves.erase("C_mq");
+    r.parameters[name].value = -0.1;
+    const Model m = assemble(r, registry());
+    EXPECT_EQ(m.find_curve("C_mq"), nullptr) << name;
+    EXPECT_GE(m.find_parameter("C_mq"), 0) << name;
+    EXPECT_FALSE(curves_without_knots(r, registry()).contains("C_mq")) << name;
+  }
+}
+
 TEST(Binding, ARoleMayNeedTheUnitOfAnother) {
   const auto spill = [](const std::string& level, const std::string& port) {
     return tanks({effect("overflow", {{"level", level}, {"port", port}})});

@@ -3,6 +3,7 @@
 
 #include "misfit/core/units.h"
 #include "misfit/model/evaluator.h"
+#include "tests/core/temporary_folder.h"
 #include "tests/model/declared_texts.h"
 
 namespace misfit {
@@ -165,6 +166,58 @@ TEST(AnEffectOnAQuantity, ReachesOutputsThatAreFormulasOfIt) {
   EXPECT_THAT(out.by, testing::Pointwise(testing::DoubleNear(1e-14), {-1.0, -3.0, -1.0}));
 }
 
+/// Its outputs have the names of a state and of a quantity, and formulas of their own.
+const std::string namesake_text = R"toml(
+[states]
+w = { unit = "V" }
+[parameters]
+k = { unit = "1/s", value = 3.0 }
+g = { unit = "-", value = 2.0 }
+[quantities]
+flow = { unit = "V/s", formula = "k*w" }
+[equations]
+w = "-flow"
+[outputs]
+w = { unit = "V", formula = "g*w" }
+flow = { unit = "V/s", formula = "g*flow" }
+half = { unit = "V", formula = "w/2" }
+)toml";
+
+struct Answer {
+  double dw = 0.0, w = 0.0, flow = 0.0, half = 0.0;
+};
+
+/// Of the system with this effect at w = 0.5 V.
+Answer answer_with(const std::string& text, const EffectRequest& effect, const std::map<std::string, double>& values) {
+  const auto known = registry_with(text);
+  Model model = assemble(request_of("text", {effect}), *known);
+  for (const auto& [name, value] : values) set(model, name, value);
+  Evaluator evaluator(model);
+  const double x[] = {0.5};
+  double dx[1];
+  std::vector<double> y(static_cast<std::size_t>(evaluator.sensor_ports()));
+  evaluator.rates(x, nullptr, 0.0, dx);
+  evaluator.predict(x, nullptr, 0.0, y.data());
+  return {dx[0], y[0], y[1], y[2]};
+}
+
+TEST(AnOutputWithTheNameOfSomethingElse, IsWhatSensorEffectsMean) {
+  const Answer bias = answer_with(namesake_text, effect("bias", {{"output", "flow"}}), {{"offset", 0.25}});
+  EXPECT_DOUBLE_EQ(bias.dw, -1.5) << "the equation is as it was";
+  EXPECT_DOUBLE_EQ(bias.flow, 3.25);
+  const Answer scale = answer_with(namesake_text, effect("sensor_scale", {{"output", "w"}}), {{"scale_error", 0.1}});
+  EXPECT_DOUBLE_EQ(scale.w, 1.1) << "of what is measured, not of the state";
+  const Answer talk = answer_with(namesake_text, effect("cross_talk", {{"output", "half"}, {"other_signal", "w"}}), {{"cross_share", 0.1}});
+  EXPECT_DOUBLE_EQ(talk.half, 0.25 + 0.1 * 1.0);
+}
+
+TEST(AnOutputThatIsTheQuantityOfItsName, IsChangedWithIt) {
+  const std::string text = replaced(replaced(namesake_text, ", formula = \"g*flow\"", ""), "k*w", "g*k*w");
+  const Answer bias = answer_with(text, effect("bias", {{"output", "flow"}}), {{"offset", 0.25}});
+  EXPECT_DOUBLE_EQ(bias.dw, -3.25);
+  EXPECT_DOUBLE_EQ(bias.flow, 3.25);
+}
+
 const std::string turntable_text = R"toml(
 [display]
 angle = "rad"
@@ -317,6 +370,61 @@ TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of("x = ["), HasSubstr("not valid TOML"));
 }
 
+TEST(DeclaredSystems, AStateThatIsTheRateOfAnotherStandsInItsEquation) {
+  const std::string rate = replaced(duffing_text, "unit = \"V/s\", scale", "unit = \"V/s\", rate_of = \"y\", scale");
+  EXPECT_EQ(error_of(rate), "");
+  EXPECT_EQ(error_of(replaced(rate, "y = \"v\"\n", "")), "");
+  EXPECT_THAT(error_of(replaced(rate, "y = \"v\"", "y = \"2*v\"")),
+              AllOf(HasSubstr("text.toml:17:"), HasSubstr("the equation of 'y' is not 'v'"), HasSubstr("take rate_of out")));
+}
+
+TEST(DeclaredSystems, AnOutputThatStepsWithAStateIsNoWayToReadIt) {
+  const auto readable = [](const std::string& outputs) {
+    return registry_with(
+               "[states]\nx = { unit = \"V\" }\n[parameters]\nk = { unit = \"1/s\", value = 1 }\n"
+               "[equations]\nx = \"-k*x\"\n[outputs]\n" +
+               outputs)
+        ->system("text")
+        .make({})
+        ->spec()
+        .readable_states;
+  };
+  const std::string line = "y = { unit = \"V\", formula = \"2*x\" }\n";
+  EXPECT_THAT(readable(line), ElementsAre(0));
+  EXPECT_THAT(readable(line + "side = { unit = \"-\", formula = \"if(x > 0, 1, 0)\" }\n"), ElementsAre(0));
+  EXPECT_THAT(readable("side = { unit = \"-\", formula = \"sign(x)\" }\n"), ElementsAre());
+}
+
+const Parameter& parameter_of(const Model& model, const std::string& name) {
+  return model.parameters.at(static_cast<std::size_t>(model.find_parameter(name)));
+}
+
+TEST(DeclaredSystems, TheScaleOfAParameterIsItsTypicalSize) {
+  const auto scale = [](const std::string& keys) {
+    const auto known = registry_with(replaced(duffing_text, "unit = \"1/s^2\", value = 10.0", "unit = \"1/s^2\", " + keys));
+    return parameter_of(assemble(request_of("text"), *known), "gain").scale;
+  };
+  EXPECT_EQ(scale("value = 10.0, scale = 0.5"), 0.5);
+  EXPECT_EQ(scale("value = 10.0, sigma = 0.1"), 10.0);
+  EXPECT_EQ(scale("value = 0.0, sigma = 0.1"), 0.1);
+  EXPECT_EQ(scale("value = 0.0"), 1.0);
+}
+
+TEST(DeclaredSystems, AStartMovesNoPriorAndAValueWithItsSigmaDoes) {
+  const auto known = registry_with(replaced(duffing_text, "value = 10.0", "value = 10.0, sigma = 0.5, free = true"));
+  ModelRequest request = request_of("text");
+  request.parameters["gain"].value = 7.0;
+  const Model started = assemble(request, *known);
+  EXPECT_EQ(parameter_of(started, "gain").value, 7.0);
+  EXPECT_EQ(parameter_of(started, "gain").prior_mean, 10.0);
+  EXPECT_EQ(parameter_of(started, "gain").prior_sigma, 0.5);
+  request.constants["gain"] = 9.0;
+  EXPECT_EQ(parameter_of(assemble(request, *known), "gain").prior_mean, 9.0) << "of [geometry]";
+  request.parameters["gain"].sigma = 0.2;
+  EXPECT_EQ(parameter_of(assemble(request, *known), "gain").prior_mean, 7.0);
+  EXPECT_EQ(parameter_of(assemble(request, *known), "gain").prior_sigma, 0.2);
+}
+
 TEST(DeclaredSystems, SayWhereAFormulaIsNotDefined) {
   const auto known = registry_with(R"toml(
 [states]
@@ -408,6 +516,23 @@ TEST(DeclaredEffects, ErrorsAreWords) {
               HasSubstr("switches it off"));
 }
 
+TEST(DeclaredEffects, AreRefusedWhereANameMeansAnOutputAndSomethingElse) {
+  const SystemSpec system = registry_with(namesake_text)->system("text").make({})->spec();
+  const auto error = [&](const std::string& port, const std::string& formula, const std::string& unit) {
+    return message_of<InputError>([&] {
+      static_cast<void>(declared_effect(effect_in_one_line("extra", "{ port = \"" + port + "\", formula = \"" + formula +
+                                                                        "\", parameters = { c = { unit = \"" + unit + "\" } } }"),
+                                        system));
+    });
+  };
+  for (const std::string& message : {error("flow", "c", "V/s"), error("w", "c*w", "-")})
+    EXPECT_THAT(message, AllOf(HasSubstr("study.toml:2"), HasSubstr("is an output with a formula of its own"),
+                               HasSubstr("call the output otherwise")));
+  const auto made = declared_effect(
+      effect_in_one_line("extra", "{ port = \"dw/dt\", formula = \"c*w\", parameters = { c = { unit = \"1/s\" } } }"), system);
+  EXPECT_EQ(made->spec().quantities.size(), 1U) << "the state: forces read no outputs";
+}
+
 TEST(DeclaredEffects, ASigmaIsAPriorAboutTheValueInEveryFit) {
   const auto known = registry_with(duffing_text);
   const auto made = declared_effect(
@@ -415,6 +540,16 @@ TEST(DeclaredEffects, ASigmaIsAPriorAboutTheValueInEveryFit) {
           "extra", R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2", value = 2.0, sigma = 0.25 } } })toml"),
       known->system("text").make({})->spec());
   EXPECT_EQ(made->spec().coefficients.front().own_sigma, 0.25);
+  Registry with = Registry::over(*known);
+  with.add(declared_effect(
+      effect_in_one_line(
+          "extra", R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2", value = 2.0, sigma = 0.25 } } })toml"),
+      known->system("text").make({})->spec()));
+  ModelRequest request = request_of("text", {effect("extra")});
+  request.parameters["c"].value = 3.0;
+  const Model model = assemble(request, with);
+  EXPECT_EQ(parameter_of(model, "c").value, 3.0);
+  EXPECT_EQ(parameter_of(model, "c").prior_mean, 2.0) << "a start is no value that is known";
 }
 
 }  // namespace

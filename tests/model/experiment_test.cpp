@@ -66,6 +66,46 @@ TEST(SignalsFrom, AnInputIsUnwrappedAndMissingValuesAreBridgedButNotUsed) {
   EXPECT_TRUE(s.inputs[1].values.empty());  // phi_rate: nobody needs it
 }
 
+/// Five seconds of an input in this unit, recorded as the column `u` or, where it is called u_rate, as this level in that unit.
+Signals with_angle(const std::string& input, const std::string& unit, const std::vector<double>& u, const std::string& recorded_unit) {
+  const auto registry = testing_models::registry_with("[states]\nx = { unit = \"rad\" }\n[inputs]\n" + input + " = { unit = \"" + unit +
+                                                      "\" }\n[parameters]\nk = { unit = \"1/s\", value = 1.0 }\nT = { unit = \"" + unit +
+                                                      "\", value = 1.0 }\n[equations]\nx = \"k*" + input + "/T*1 - k*x\"\n" +
+                                                      "[outputs]\nx = { unit = \"rad\", noise = 0.1 }\n");
+  Table table;
+  table.source = "made.csv";
+  table.add("t", "s", {0.0, 1.0, 2.0, 3.0, 4.0});
+  table.add("u", recorded_unit, u);
+  table.add("x", "rad", {0.0, 0.0, 0.0, 0.0, 0.0});
+  return signals_from(table, assemble(testing_models::request_of("text"), *registry), plain());
+}
+
+bool said_unwrapped(const Signals& s) {
+  return std::any_of(s.notes.begin(), s.notes.end(), [](const auto& note) { return note.find("unwrapped") != note.npos; });
+}
+
+TEST(SignalsFrom, AStepOfARateOfAnAngleIsKept) {
+  const std::vector<double> step{0.0, 0.0, 5.0, 5.0, -9.0};
+  for (const char* unit : {"rad/s", "rad/s^2"}) {
+    const Signals s = with_angle("u", unit, step, unit);
+    EXPECT_EQ(s.inputs[0].values, step) << unit;
+    EXPECT_FALSE(said_unwrapped(s)) << unit;
+  }
+  const Signals rate = with_angle("u_rate", "rad/s^2", step, "rad/s");
+  EXPECT_EQ(rate.inputs[0].values, (std::vector<double>{2.5, 2.5, 2.5, -7.0, -7.0})) << "differentiated; its ends bridged";
+}
+
+TEST(SignalsFrom, AnAngleThatPassesAFullTurnIsUnwrappedAndSaid) {
+  const Signals angle = with_angle("u", "rad", {3.0, -3.0, -2.5, 3.0, 3.1}, "rad");
+  EXPECT_NEAR(angle.inputs[0].values[1], 360.0 * degree - 3.0, 1e-12);
+  EXPECT_EQ(angle.inputs[0].values[4], 3.1);
+  EXPECT_TRUE(said_unwrapped(angle));
+  EXPECT_FALSE(said_unwrapped(with_angle("u", "rad", {1.0, 2.0, 3.0, 4.0, 5.0}, "rad"))) << "nothing is changed";
+  const Signals rate = with_angle("u_rate", "rad/s", {3.0, -3.0, -2.5, 3.0, 3.1}, "rad");
+  EXPECT_NEAR(rate.inputs[0].values[1], (360.0 * degree - 5.5) / 2.0, 1e-12);
+  EXPECT_TRUE(said_unwrapped(rate));
+}
+
 /// Five seconds of a first-order system with the input `u`, declared with these keys.
 Signals with_input(const std::vector<double>& u, const std::string& keys, const ExperimentStudy& study) {
   const auto registry = testing_models::registry_with("[states]\nx = { unit = \"m\" }\n[inputs]\nu = { unit = \"m/s\", " + keys +
@@ -120,6 +160,19 @@ TEST(SignalsFrom, IsolatedWildSamplesAreSetAsideAndSaid) {
   bool said = false;
   for (const auto& note : s.notes) said = said || note.find("4 isolated outliers") != std::string::npos;
   EXPECT_TRUE(said);
+}
+
+TEST(SignalsFrom, AFlickerOfTheLastDigitOfAStillChannelIsNotAnOutlier) {
+  Table table = recording(400);
+  for (std::size_t i = 0; i < 400; ++i) table.columns[1].values[i] = i == 120 ? 12.2 : i % 50 == 30 ? 12.1 : 12.0;
+  const auto missing = [&] {
+    const Signals s = signals_from(table, eq_8(), plain());
+    const auto& values = s.measured.front().values;
+    return std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+  };
+  EXPECT_EQ(missing(), 0);
+  table.columns[1].values[200] = 30.0;
+  EXPECT_EQ(missing(), 1);
 }
 
 TEST(SignalsFrom, ABurstAfterRestAndAJumpAreMotionNotWildSamples) {

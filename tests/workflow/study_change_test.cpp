@@ -58,6 +58,18 @@ TEST_F(ChangedStudy, AValueThatIsNoTomlIsAText) {
   EXPECT_THAT(with("study.name='a \"b\"'"), HasSubstr("name = 'a \"b\"'  # two\n"));
 }
 
+TEST_F(ChangedStudy, AParameterOfAnEffectIsFoundHoweverItIsWritten) {
+  const auto free_of = [&](const std::string& entry, const std::string& key) {
+    folder.write("study.toml", text + "[parameters]\n" + entry + "\n");
+    return with(key + ".free=false").substr(text.size());
+  };
+  for (const char* key : {"parameters.late.tau", "parameters.\"late.tau\""}) {
+    EXPECT_EQ(free_of("\"late.tau\" = { value = 0.3 }", key), "[parameters]\n\"late.tau\" = { value = 0.3, free = false }\n") << key;
+    EXPECT_EQ(free_of("late.tau.free = true", key), "[parameters]\nlate.tau.free = false\n") << key;
+    EXPECT_EQ(free_of("late.tau = { free = true }", key), "[parameters]\nlate.tau = { free = false }\n") << key;
+  }
+}
+
 TEST_F(ChangedStudy, WhatIsNoSettingIsRefusedWithItsWords) {
   for (const char* words : {"", "=", "a", "a=", "=1", "\"a=1"}) EXPECT_THROW((void)read_setting(words), InputError) << words;
   for (const char* key : {"a b", "parameters..k", ".k", "k", "[parameters].k", "a = 1\nb"})

@@ -142,7 +142,7 @@ struct ParameterStudy {
 
 struct CurveStudy {
   std::string of;                                    ///< quantity; empty: that of the effect's specification
-  std::optional<std::vector<config::Number>> knots;  ///< without a unit: in degrees for angles, else SI; nullopt = "auto"
+  std::optional<std::vector<config::Number>> knots;  ///< without a unit: in that which is shown (display_unit()); nullopt = "auto"
   std::optional<double> roughness;                   ///< nullopt = "auto"; unit of the weight: see inference/roughness.h
   std::optional<std::filesystem::path> table;  ///< CSV with columns `of` and the curve's name: values to start from, or to simulate with
   Source where;

@@ -130,7 +130,52 @@ std::string with_new_value(const StudyText& study, const TomlPath& path, const s
   return inserted(study.text(), end, study.newline() + entry);
 }
 
+/// The keys that `name` may be written as: with quotation marks around all of it, around two parts, around none.
+std::vector<TomlPath> spellings(const std::string& name) {
+  std::vector<TomlPath> out{{name}};
+  TomlPath parts;
+  std::size_t begin = 0;
+  for (std::size_t point = name.find('.'); point != std::string::npos; point = name.find('.', begin)) {
+    out.push_back({name.substr(0, point), name.substr(point + 1)});
+    parts.push_back(name.substr(begin, point - begin));
+    begin = point + 1;
+  }
+  parts.push_back(name.substr(begin));
+  out.push_back(parts);
+  return out;
+}
+
+/// Where the text has this entry of [parameters]; empty: nowhere.
+TomlPath spelled(const StudyText& study, const std::string& name) {
+  for (const TomlPath& keys : spellings(name)) {
+    TomlPath path{"parameters"};
+    path.insert(path.end(), keys.begin(), keys.end());
+    if (study.find(path) != nullptr) return path;
+  }
+  return {};
+}
+
+/// The path to an entry of [parameters], or to a key of one, as the text spells the parameter's name.
+TomlPath as_spelled(const StudyText& study, const TomlPath& path) {
+  if (path.front() != "parameters" || path.size() < 3 || study.find(path) != nullptr) return path;
+  for (const auto end : {path.end(), path.end() - 1}) {
+    TomlPath out = spelled(study, fmt::format("{}", fmt::join(path.begin() + 1, end, ".")));
+    if (out.empty()) continue;
+    out.insert(out.end(), end, path.end());
+    return out;
+  }
+  return path;
+}
+
 }  // namespace
+
+std::vector<std::string> parameter_path(const std::string& text, const std::string& name) {
+  TomlPath path = spelled(StudyText(text), name);
+  if (!path.empty()) return path;
+  path = spellings(name).back();
+  path.insert(path.begin(), "parameters");
+  return path;
+}
 
 std::string effect_line(const std::string& name, const std::string& kind, const std::map<std::string, std::string>& roles,
                         const EffectStart& start) {
@@ -193,10 +238,11 @@ std::string with_renamed_entry(const std::string& text, const std::string& secti
   return out;
 }
 
-std::string with_value(const std::string& text, const std::vector<std::string>& path, const std::string& value) {
-  if (path.size() < 2) throw InputError("a key of a section is expected, as parameters.k.free");
+std::string with_value(const std::string& text, const std::vector<std::string>& path_given, const std::string& value) {
+  if (path_given.size() < 2) throw InputError("a key of a section is expected, as parameters.k.free");
   if (!is_toml_value(value)) throw InputError("'" + shown(value) + "': one value is expected");
   const StudyText study(text);
+  const TomlPath path = as_spelled(study, path_given);
   const TomlNode* old = study.find(path);
   if (old != nullptr && old->kind == TomlNode::Kind::table && !old->inline_table)
     throw InputError(dotted(path, 0) + " is a section: one of its keys is expected");

@@ -44,6 +44,10 @@ struct EffectStart {
 /// by its number, from "0". InputError if `value` is no value, or the path leads through one or to a table.
 [[nodiscard]] std::string with_value(const std::string& text, const std::vector<std::string>& path, const std::string& value);
 
+/// Where [parameters] of the text says something of a parameter: under its name, or, without quotation marks, under the parts of a name
+/// with a point. Its parts where it says nothing. with_value() finds it, too.
+[[nodiscard]] std::vector<std::string> parameter_path(const std::string& text, const std::string& name);
+
 /// [system] kind = "KIND" instead of what is there. InputError if the study has no such line.
 [[nodiscard]] std::string with_system(const std::string& text, const std::string& kind);
 

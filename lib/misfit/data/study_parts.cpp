@@ -248,7 +248,8 @@ void read_parameter(const std::string& name, const DescribedSection& section, co
   parameter.free = section.flag("free");
   parameter.where = where;
   parameter.section = section;
-  study.parameters[name] = std::move(parameter);
+  if (!study.parameters.emplace(name, std::move(parameter)).second)
+    throw InputError(where, "[parameters] " + shown(name) + " is there twice, with quotation marks and without: write it once");
 }
 
 void read_parameters(const Section& root, Study& study) {

@@ -12,6 +12,12 @@ namespace {
 
 std::string with_unit(double value, const std::string& unit) { return format_value(value) + (unit == "-" ? "" : " " + plain_si(unit)); }
 
+double typical_size(const ConstantSpec& constant, double value) {
+  if (constant.scale > 0.0) return constant.scale;
+  if (value != 0.0) return std::abs(value);
+  return constant.prior_sigma > 0.0 ? constant.prior_sigma : 1.0;
+}
+
 }  // namespace
 
 Assembler::Assembler(const ModelRequest& request, const Registry& registry) : request_(request), registry_(registry) {
@@ -72,6 +78,13 @@ std::map<std::string, std::string> Assembler::parameter_units() {
   return units;
 }
 
+std::map<std::string, std::string> Assembler::parameter_names() {
+  std::map<std::string, std::string> names;
+  for (const auto& [name, unit] : parameter_units()) names[name] = name;
+  for (const auto& [name, alias] : aliases_) names[alias] = name;
+  return names;
+}
+
 void Assembler::add_states() {
   model_.state_specs = system().states;
   std::vector<std::string> names;
@@ -124,11 +137,13 @@ void Assembler::add_constants() {
     p.free = constant.free;
     if (constant.prior_sigma > 0.0) p.prior_sigma = constant.prior_sigma;
     if (constant.strength) p.kind = CoefficientKind::strength;
+    const bool known = given != request_.constants.end() || !constant.required;
+    if (known) p.prior_mean = p.value;
     if (valued) p.value = *asked->second.value;
-    p.scale = p.value != 0.0 ? std::abs(p.value) : 1.0;
+    if (!known) p.prior_mean = p.value;
+    p.scale = typical_size(constant, p.value);
     const auto sigma = request_.constant_sigmas.find(constant.name);
     if (sigma != request_.constant_sigmas.end()) p.prior_sigma = sigma->second;
-    p.prior_mean = p.value;
     apply_request(p);
     model_.parameters.push_back(p);
   }
@@ -157,8 +172,10 @@ void Assembler::apply_request(Parameter& p) {
   if (r.value) p.value = *r.value;
   if (r.value && !std::isfinite(p.lower) && !std::isfinite(p.upper)) p.scale = std::max(p.scale, std::abs(p.value));
   if (r.free) p.free = *r.free;
-  if (r.sigma) p.prior_sigma = r.sigma;
-  p.prior_mean = p.value;
+  if (r.sigma) {  // else the value is a start: who gave the sigma gave the mean
+    p.prior_sigma = r.sigma;
+    p.prior_mean = p.value;
+  }
   if (!(p.lower < p.upper))
     throw InputError(r.where,
                      "bounds of " + p.name + " must increase: [" + with_unit(p.lower, p.unit) + ", " + with_unit(p.upper, p.unit) + "]");
@@ -211,6 +228,10 @@ std::map<std::string, std::string> curves_without_knots(const ModelRequest& requ
 
 std::map<std::string, std::string> parameter_units(const ModelRequest& request, const Registry& registry) {
   return Assembler(request, registry).parameter_units();
+}
+
+std::map<std::string, std::string> parameter_names(const ModelRequest& request, const Registry& registry) {
+  return Assembler(request, registry).parameter_names();
 }
 
 }  // namespace misfit

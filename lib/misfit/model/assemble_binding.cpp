@@ -62,7 +62,7 @@ void Assembler::bind_ports(const EffectRequest& request, const EffectSpec& spec,
       continue;
     }
     const std::string target = target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); });
-    const auto place = find_port(target);
+    const auto place = find_port(role, target);
     if (!place) {
       if (role.optional && !request.roles.contains(role.name)) {
         bound.ports.push_back(-1);
@@ -94,7 +94,7 @@ void Assembler::check_unit(const EffectRequest& request, const Role& role, const
 int Assembler::bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const {
   if (is_left_out(request, role)) return -1;
   const std::string target = target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; });
-  int index = find_quantity(target);
+  int index = find_quantity(role, target);
   if (kind == PortKind::quantity && index >= system().base_quantities && index_of(system().inputs, target) >= 0) {
     if (const int recorded = find_quantity(as_recorded(target)); recorded >= 0) index = recorded;  // what such effects change
   }

@@ -104,11 +104,11 @@ std::optional<CurveRequest> Assembler::curve_request(const std::string& name, co
 std::map<std::string, std::string> Assembler::role_units(const EffectRequest& request, const EffectSpec& spec) const {
   std::map<std::string, std::string> units;
   for (const auto& role : spec.quantities) {
-    const int index = find_quantity(target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; }));
+    const int index = find_quantity(role, target_of(request, role, [&](const std::string& name) { return find_quantity(name) >= 0; }));
     units[role.name] = index < 0 ? "-" : unit_of_quantity(index);
   }
   for (const auto& role : spec.ports) {
-    const auto place = find_port(target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); }));
+    const auto place = find_port(role, target_of(request, role, [&](const std::string& name) { return find_port(name).has_value(); }));
     units[role.name] = place ? place->unit : "-";
   }
   return units;
@@ -135,6 +135,19 @@ std::optional<Assembler::Place> Assembler::find_port(const std::string& name) co
   return std::nullopt;
 }
 
+/// Index of the output; −1: the name means something else, or the same.
+int Assembler::namesake_for(const Role& role, const std::string& name) const {
+  const std::string_view called = role.name;
+  if (called != "output" && called != "other_output" && called != "signal" && called != "other_signal") return -1;
+  const int output = index_of(system().outputs, name);
+  return output >= 0 && system().outputs[output].namesake ? output : -1;
+}
+
+std::optional<Assembler::Place> Assembler::find_port(const Role& role, const std::string& name) const {
+  const int output = namesake_for(role, name);
+  return output < 0 ? find_port(name) : std::optional(Place{PortKind::sensor, output, system().outputs[output].unit});
+}
+
 std::vector<std::string> Assembler::port_names() const {
   std::vector<std::string> names;
   for (const auto& port : system().dynamic_ports) names.push_back(port.name);
@@ -148,6 +161,11 @@ std::vector<std::string> Assembler::port_names() const {
 int Assembler::find_quantity(const std::string& name) const {
   const int own = index_of(system().quantities, name), output = index_of(system().outputs, name);
   return own >= 0 || output < 0 ? own : int_size(system().quantities) + output;
+}
+
+int Assembler::find_quantity(const Role& role, const std::string& name) const {
+  const int output = namesake_for(role, name);
+  return output < 0 ? find_quantity(name) : int_size(system().quantities) + output;
 }
 
 std::vector<std::string> Assembler::quantity_names() const {

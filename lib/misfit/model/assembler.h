@@ -23,6 +23,7 @@ class Assembler {
   Model run();
   std::map<std::string, std::string> curves_without_knots();
   std::map<std::string, std::string> parameter_units();
+  std::map<std::string, std::string> parameter_names();
 
  private:
   const SystemSpec& system() const { return model_.system->spec(); }
@@ -71,6 +72,9 @@ class Assembler {
     std::string unit;
   };
   std::optional<Place> find_port(const std::string& name) const;
+  /// For a role: those of sensors mean outputs, where an output has the name of something else, too (OutputSpec::namesake).
+  std::optional<Place> find_port(const Role& role, const std::string& name) const;
+  int namesake_for(const Role& role, const std::string& name) const;
   std::vector<std::string> port_names() const;
   void bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const;
   void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) const;
@@ -80,6 +84,7 @@ class Assembler {
   void check_input(const EffectRequest& request, const std::string& target) const;
   void check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const;
   int find_quantity(const std::string& name) const;
+  int find_quantity(const Role& role, const std::string& name) const;
   std::vector<std::string> quantity_names() const;
   int bind_constant(const EffectRequest& request, const std::string& name) const;
   BoundCoefficient bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request, PortKind kind);

@@ -149,8 +149,21 @@ class Compiler {
       out_->rate_nodes.push_back(g().add(node, g().leaf(n.F(own_ports_ + j))));
       note_inputs(node);
     }
+    check_rates();
     for (std::size_t j = 0; j < states.size(); ++j) {
       if (!kinematic_[j]) spec().force_ports.push_back("d" + states[j].name + "/dt");
+    }
+  }
+
+  void check_rates() {
+    const auto& states = spec().states;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const int of = states[i].rate_of;
+      if (of < 0 || equation_nodes_[of] == state_nodes_[i]) continue;
+      throw InputError(d_.equations[of].syntax.source.where,
+                       "the equation of '" + shown(states[of].name) + "' is not '" + shown(states[i].name) +
+                           "', which says that it is its rate: " + "leave the equation out, or take rate_of out of '" +
+                           shown(states[i].name) + "'");
     }
   }
 
@@ -196,7 +209,9 @@ class Compiler {
       if (state >= 0 || leaf >= n.nx) return;
       state = leaf;
     }
-    if (state < 0 || uses(g().derivatives(node, {g().leaf(state)}).front(), state)) return;
+    if (state < 0) return;
+    const int slope = g().derivatives(node, {g().leaf(state)}).front();
+    if (g().is(slope, 0.0) || uses(slope, state)) return;  // steps of the state, or a curve
     out_->readable.emplace_back(output, state);
     spec().readable_states.push_back(state);
   }
@@ -249,10 +264,18 @@ class Compiler {
       add_quantity(q, quantity_nodes_[i], all);
     }
     spec().quantities = std::move(all);
+    note_namesakes();
     note_ports_in_outputs();
     if (int_size(spec().quantities) + int_size(spec().outputs) > kMaxQuantities)
       throw InputError(d_.where, "states, inputs, quantities and outputs are together too many");
     set_roles(d_, own_ports_);
+  }
+  void note_namesakes() {
+    for (int o = 0; o < int_size(spec().outputs); ++o) {
+      OutputSpec& output = spec().outputs[o];
+      const int same = index_of(spec().quantities, output.name);
+      output.namesake = same >= 0 ? all_quantity_nodes_[same] != output_nodes_[o] : index_of(spec().dynamic_ports, output.name) >= 0;
+    }
   }
   void note_ports_in_outputs() {
     for (int i = 0; i < int_size(spec().quantity_ports); ++i) {

@@ -107,6 +107,7 @@ class FormulaEffectBuilder {
     const std::string* unit = look(system_.dynamic_ports);
     if (unit == nullptr) unit = look(system_.quantity_ports);
     on_sensor_ = unit == nullptr;
+    if (!on_sensor_) refuse_namesake(declared_.port);
     if (unit == nullptr) unit = look(system_.outputs);
     if (unit == nullptr)
       throw InputError(study_.where, "effect '" + shown(study_.name) + "': system '" + shown(system_.key) + "' has no port '" +
@@ -141,6 +142,14 @@ class FormulaEffectBuilder {
     declared_.parameters->finish();
   }
 
+  /// Of an output that has the name of something else nothing says which is meant.
+  void refuse_namesake(const std::string& name) const {
+    const int output = index_of(system_.outputs, name);
+    if (output < 0 || !system_.outputs[output].namesake) return;
+    throw InputError(study_.where, "effect '" + shown(study_.name) + "': '" + shown(name) + "' of system '" + shown(system_.key) +
+                                       "' is an output with a formula of its own, and something else as well: call the output otherwise");
+  }
+
   const std::string* find_quantity(const std::string& name) const {
     for (const auto& q : system_.quantities) {
       if (q.name == name) return &q.unit;
@@ -164,6 +173,7 @@ class FormulaEffectBuilder {
       const auto same = [&](const Role& role) { return e.text == role.name; };
       auto& roles = spec().quantities;
       auto& constants = spec().constants;
+      if (on_sensor_ && index_of(system_.quantities, e.text) >= 0) refuse_namesake(e.text);
       if (const std::string* unit = find_quantity(e.text)) {
         if (std::none_of(roles.begin(), roles.end(), same)) roles.push_back({keep(e.text), keep(*unit)});
       } else if (find_constant(e.text) != nullptr && std::find(constants.begin(), constants.end(), e.text) == constants.end()) {

@@ -158,6 +158,7 @@ class Reader {
     p.value = text.value.value_or(0.0);
     p.free = text.free;
     p.prior_sigma = text.sigma.value_or(0.0);
+    p.scale = text.scale.value_or(0.0);
     out_.spec.constants.push_back(p);
   }
 

@@ -50,15 +50,25 @@ std::size_t bridge(const std::vector<double>& t, std::vector<double>& y) {
   return filled;
 }
 
+/// The smallest difference above 0 of neighbours: the last digit, where values are rounded coarsely; 0 if nothing changes.
+double smallest_step(const std::vector<double>& y) {
+  double smallest = 0.0;
+  for (std::size_t i = 1; i < y.size(); ++i) {
+    const double step = std::abs(y[i] - y[i - 1]);
+    if (step > 0.0 && std::isfinite(step) && (smallest == 0.0 || step < smallest)) smallest = step;
+  }
+  return smallest;
+}
+
 /// Sets isolated outliers to missing and returns their number. Outlier: more than 15 robust sigmas from the cubic through two neighbours on
 /// either side, and more than five times the largest difference of these neighbours, so that a burst or a jump of the motion itself is not
-/// rejected.
+/// rejected. The sigma is at least that of rounding to the smallest step between neighbours: a flicker of the last digit is not rejected.
 std::size_t reject_isolated_outliers(std::vector<double>& y) {
   constexpr double max_sigmas = 15.0, min_times_neighbours = 5.0;
   const auto distance = [&](std::size_t i) { return y[i] - (4.0 * (y[i - 1] + y[i + 1]) - y[i - 2] - y[i + 2]) / 6.0; };
   std::vector<double> distances;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) distances.push_back(distance(i));
-  const double limit = max_sigmas * mad_sigma(distances);
+  const double limit = max_sigmas * std::max(mad_sigma(distances), smallest_step(y) / std::sqrt(12.0));
   std::vector<std::size_t> outliers;
   for (std::size_t i = 2; i + 2 < y.size(); ++i) {
     const double between = std::max({std::abs(y[i - 2] - y[i - 1]), std::abs(y[i - 1] - y[i + 1]), std::abs(y[i + 1] - y[i + 2])});
@@ -73,6 +83,15 @@ std::string level_of(const std::string& input) {
   constexpr std::string_view suffix = "_rate";
   const bool rate = input.size() > suffix.size() && input.ends_with(suffix);
   return rate ? input.substr(0, input.size() - suffix.size()) : "";
+}
+
+/// The SI unit of what has a rate in `unit`: "rad/s^2" → "rad/s"; a unit that is none of a rate stays as it is.
+std::string level_unit(const std::string& unit) {
+  auto symbols = unit_symbols(plain_si(unit));
+  for (auto& [symbol, power] : symbols) {
+    if (symbol == "s" && power < 0.0) power += 1.0;
+  }
+  return unit_text(symbols);
 }
 
 class Reader {
@@ -136,20 +155,28 @@ class Reader {
     return delayed(out_.t, values, input.delay, input.hold);
   }
 
+  /// Angles unwrapped, and said where that changes something; all else as it is: a rate may jump by more than half a turn per second.
+  std::vector<double> without_turns(std::vector<double> values, const std::string& unit, const std::string& input) {
+    if (plain_si(unit) != "rad") return values;
+    std::vector<double> angles = unwrapped(values);
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      if (!std::isfinite(angles[i]) || angles[i] == values[i]) continue;
+      out_.notes.push_back("input " + input + ": the angle is unwrapped, full turns are added from " + format_value(out_.t[i]) + " s on");
+      break;
+    }
+    return angles;
+  }
+
   std::vector<double> read_as_recorded(const InputSpec& input) {
-    const bool angle = parse_unit(input.unit).angle;
     std::vector<double> values;
     const std::string base = level_of(input.name);
     if (!base.empty() && table_.find(header(input.name)) == nullptr) {
       if (table_.find(header(base)) == nullptr) static_cast<void>(table_.at(header(input.name)));  // throws, naming the nearest
-      const std::string unit = plain_si(input.unit), base_unit = unit.ends_with("/s") ? unit.substr(0, unit.size() - 2) : unit;
-      std::vector<double> level = kept(values_of(base, base_unit));
-      if (parse_unit(base_unit).angle) level = unwrapped(level);
-      values = central_rate(out_.t, level);
+      const std::string unit = level_unit(input.unit);
+      values = central_rate(out_.t, without_turns(kept(values_of(base, unit)), unit, input.name));
       out_.notes.push_back("input " + input.name + " differentiated from " + base);
     } else {
-      values = kept(values_of(input.name, input.unit));
-      if (angle) values = unwrapped(values);
+      values = without_turns(kept(values_of(input.name, input.unit)), input.unit, input.name);
     }
     std::vector<bool> missing;
     for (double v : values) missing.push_back(!std::isfinite(v));

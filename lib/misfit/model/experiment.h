@@ -14,9 +14,10 @@ namespace misfit {
 
 /// Columns of a recording (any units, of the header or of the end of a mapped column's name: ColumnMap::values) → what a model measures and
 /// is driven by, in SI. Outputs are looked for under their names in the system, through `columns`; so are inputs that the model needs. An
-/// input NAME_rate that is not there is differentiated from NAME (angles are unwrapped first). Gaps of inputs are bridged linearly and the
-/// samples inside are not used; inputs with a delay are shifted by it. Rows without time are dropped; time that runs backwards is an
-/// InputError with the line. All of it is said in `notes`. RunError if no sample is left.
+/// input NAME_rate that is not there is differentiated from NAME. Inputs that are angles are unwrapped, rates of angles are not. Isolated
+/// outliers of outputs are set aside. Gaps of inputs are bridged linearly and the samples inside are not used; inputs with a delay are
+/// shifted by it. Rows without time are dropped; time that runs backwards is an InputError with the line. All of it is said in `notes`.
+/// RunError if no sample is left.
 [[nodiscard]] Signals signals_from(const Table& table, const Model& model, const ExperimentStudy& study);
 
 /// What `columns` of a recording may name: the time, outputs, inputs, and NAME for an input NAME_rate.

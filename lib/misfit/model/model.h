@@ -24,7 +24,7 @@ struct CurveRequest {
 /// What a study says of one parameter, in SI.
 struct ParameterRequest {
   std::optional<bool> free;
-  std::optional<double> value, lower, upper, sigma;  ///< sigma: Gaussian prior about `value`
+  std::optional<double> value, lower, upper, sigma;  ///< sigma: Gaussian prior about `value`, which alone moves none
   Source where;
 };
 
@@ -49,8 +49,8 @@ struct ModelRequest {
   std::map<std::string, double> constant_sigmas;  ///< where known
   std::map<std::string, Source> constants_where;
   std::vector<EffectRequest> effects;
-  std::map<std::string, ParameterRequest> parameters;
-  std::map<std::string, CurveRequest> curves;  ///< by the coefficient's name in the model
+  std::map<std::string, ParameterRequest> parameters;  ///< of a study: by the model's names
+  std::map<std::string, CurveRequest> curves;          ///< by the coefficient's name in the model
   struct InitialRequest {
     std::optional<Initial> initial;
     std::optional<double> value;  ///< SI
@@ -164,5 +164,8 @@ struct Model {
 
 /// Unit of every parameter and curve by its name in the model to be, before assembling: to read values that a study writes with units.
 [[nodiscard]] std::map<std::string, std::string> parameter_units(const ModelRequest& request, const Registry& registry);
+
+/// What a study may call every parameter and curve of the model to be → its name in the model, which is among them.
+[[nodiscard]] std::map<std::string, std::string> parameter_names(const ModelRequest& request, const Registry& registry);
 
 }  // namespace misfit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
@@ -22,10 +23,15 @@ constexpr std::array<RigEntry, 9> entries = {{{"R", &RigGeometry::R},
                                               {"R2", &RigGeometry::R2},
                                               {"R3", &RigGeometry::R3}}};
 
-void read_rig(const config::Section& section, RigGeometry& rig) {
+/// Limits are those of a rig that a camera looks at. A constant of the system that has the name of an entry and another dimension is none.
+void read_rig(const config::Section& section, const SystemSpec& spec, bool camera, RigGeometry& rig) {
   const config::DescribedSection geometry(section, config::group_of(study_keys(), "geometry"));
   for (const auto& entry : entries) {
-    if (const auto number = geometry.number(entry.name)) rig.*entry.field = number->value;
+    const std::string& unit = geometry.description().key(entry.name).unit;
+    const int own = index_of(spec.constants, entry.name);
+    if (own >= 0 && !parse_unit(spec.constants[own].unit).same_dimension(parse_unit(unit))) continue;
+    const auto number = camera ? geometry.number(entry.name) : section.number(entry.name, unit, true);
+    if (number) rig.*entry.field = number->value;
   }
 }
 
@@ -56,12 +62,36 @@ ParameterRequest read_parameter(const ParameterStudy& study, const std::string& 
   return out;
 }
 
+using Words = std::map<std::string, std::string>;
+
+/// The model's name of what a study may call otherwise; a name that the model does not have is reported by assemble().
+std::string name_in_model(const Words& names, const std::string& name) {
+  const auto known = names.find(name);
+  return known == names.end() ? name : known->second;
+}
+
+/// … and of a parameter of an effect, as its line calls it.
+std::string name_in_model(const Words& names, const EffectStudy& effect, const std::string& own) {
+  const auto known = names.find(effect.name + "." + own);
+  return known == names.end() ? own : known->second;
+}
+
+void read_parameters(const Study& study, const Words& units, const Words& names, ModelRequest& request) {
+  for (const auto& [name, parameter] : study.parameters) {
+    const auto unit = units.find(name);
+    const std::string in_model = name_in_model(names, name);
+    const ParameterRequest read = read_parameter(parameter, unit == units.end() ? "-" : unit->second);
+    if (!request.parameters.emplace(in_model, read).second)
+      throw InputError(parameter.where, "[parameters]: '" + shown(name) + "' stands there under another name, too: the model calls it '" +
+                                            shown(in_model) + "'");
+  }
+}
+
 /// `start`, `free` and `fixed` of an effect's line: what [parameters] does not say.
-void read_starts(const Study& study, const std::map<std::string, std::string>& units, ModelRequest& request) {
+void read_starts(const Study& study, const Words& units, const Words& names, ModelRequest& request) {
   for (const auto& effect : study.effects) {
     for (const auto& [own, number] : effect.start) {
-      const std::string prefixed = effect.name + "." + own;  // its name where another effect or the system has one like it
-      const std::string& name = units.contains(prefixed) ? prefixed : own;
+      const std::string name = name_in_model(names, effect, own);
       const auto unit = units.find(name);
       if (unit != units.end() && !number.unit.empty() && !parse_unit(number.unit).same_dimension(parse_unit(unit->second)))
         throw InputError(number.where, name + " needs [" + plain_si(unit->second) + "], not [" + number.unit + "]");
@@ -71,11 +101,9 @@ void read_starts(const Study& study, const std::map<std::string, std::string>& u
     }
     for (const auto& [list, is_free] : {std::pair{&effect.free, true}, std::pair{&effect.fixed, false}}) {
       for (const std::string& own : *list) {
-        const std::string prefixed = effect.name + "." + own;
-        const std::string& name = units.contains(prefixed) ? prefixed : own;
         if (is_free && std::find(effect.fixed.begin(), effect.fixed.end(), own) != effect.fixed.end())
           throw InputError(effect.where, "effect '" + shown(effect.name) + "': " + shown(own) + " stands in free and in fixed");
-        ParameterRequest& parameter = request.parameters[name];
+        ParameterRequest& parameter = request.parameters[name_in_model(names, effect, own)];
         if (parameter.where.file.empty()) parameter.where = effect.where;
         if (!parameter.free) parameter.free = is_free;
       }
@@ -216,22 +244,26 @@ StudyModel read_model(const Study& study, const Registry& registry) {
   const SystemSpec spec = type.make(request.options)->spec();
   check_columns(study, request.system, spec, registry);
   if (study.geometry) {
-    read_rig(*study.geometry, out.rig);
+    read_rig(*study.geometry, spec, study.has_camera, out.rig);
     read_constants(*study.geometry, spec, request);
     study.geometry->finish();
   }
   for (const auto& effect : study.effects) request.effects.push_back({effect.name, effect.kind, effect.roles, effect.where});
-  const std::map<std::string, std::string> units = parameter_units(request, registry);
-  for (const auto& [name, parameter] : study.parameters) {
-    const auto unit = units.find(name);  // assemble() reports a name that is not there
-    request.parameters[name] = read_parameter(parameter, unit == units.end() ? "-" : unit->second);
-  }
-  read_starts(study, units, request);
+  const Words units = parameter_units(request, registry), names = parameter_names(request, registry);
+  read_parameters(study, units, names, request);
+  read_starts(study, units, names, request);
   read_initial(study, spec, request);
   read_noise(study, spec, request);
   read_force(study, spec, request);
   read_curves(study, spec, request);
   return out;
+}
+
+std::string name_in_study(const Study& study, const Words& names, const std::string& parameter) {
+  const std::string wanted = name_in_model(names, parameter);
+  const auto& all = study.parameters;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return name_in_model(names, entry.first) == wanted; });
+  return found == all.end() ? parameter : found->first;
 }
 
 std::optional<ModelRequest> regression_form(const ModelRequest& request, const Registry& registry, std::vector<std::string>& left_out) {

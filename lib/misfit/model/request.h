@@ -22,9 +22,13 @@ struct RigEntry {
 };
 [[nodiscard]] std::span<const RigEntry> rig_entries();
 
-/// Names, units and bounds of [system], [geometry], [effects], [parameters] and [curves] against the registry. Knots in degrees become
-/// radians where the quantity is an angle. InputError with file, line and nearest name.
+/// Names, units and bounds of [system], [geometry], [effects], [parameters] and [curves] against the registry. Knots without a unit
+/// are taken in the one that is shown (display_unit()). What an effect's line says of a parameter counts where [parameters] does not say
+/// it. InputError with file, line and nearest name.
 [[nodiscard]] StudyModel read_model(const Study& study, const Registry& registry);
+
+/// How [parameters] of the study calls a parameter of the model, of parameter_names(); its name in the model where nothing is said of it.
+[[nodiscard]] std::string name_in_study(const Study& study, const std::map<std::string, std::string>& names, const std::string& parameter);
 
 /// The same request in the system's regression form (SystemSpec::regression): for sliding_bin. Curves keep their places under the names of
 /// that form; effects with free coefficients other than the static and damping curves are left out, and named in `left_out`. nullopt if the

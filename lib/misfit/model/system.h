@@ -64,12 +64,15 @@ struct ConstantSpec {
   bool free = false;         ///< unless a study says otherwise
   double prior_sigma = 0.0;  ///< Gaussian about the value [unit]; 0: no prior
   bool strength = false;     ///< the rates are linear in it: a regression finds it
+  double scale = 0.0;        ///< typical size [unit]; 0: that of the value, else prior_sigma, else 1
 };
 
 struct OutputSpec {
   std::string name, unit;
   int observes = -1;   ///< index of the state it is; −1: a function
   double noise = 0.0;  ///< typical white measurement noise [unit], a start only
+  /// Another function than the state, input or quantity of its name, or called as a dynamic port: only roles of sensors mean the output.
+  bool namesake = false;
 };
 
 /// Sensor ports behind the outputs: shifts of the time at which all outputs are taken, and at which one is [s].

@@ -53,14 +53,11 @@ EffectStart start_found(const Effect& effect, const Candidate& from) {
   return start;
 }
 
-/// The study's text with these parameters held at these values.
-std::string with_held(std::string text, const std::map<std::string, Estimate>& held) {
+/// The study's text with these parameters of the model held at these values.
+std::string with_held(std::string text, const Session& session, const ModelRequest& model, const std::map<std::string, Estimate>& held) {
+  const std::map<std::string, std::string> names = parameter_names(model, session.registry);
   for (const auto& [name, estimate] : held) {
-    std::vector<std::string> path = {"parameters"};
-    for (std::size_t at = 0, dot = 0; dot != std::string::npos; at = dot + 1) {
-      dot = name.find('.', at);
-      path.push_back(name.substr(at, dot == std::string::npos ? dot : dot - at));
-    }
+    std::vector<std::string> path = parameter_path(text, name_in_study(session.study, names, name));
     const auto set = [&](const char* key, const std::string& value) {
       path.emplace_back(key);
       text = with_value(text, path, value);
@@ -153,7 +150,7 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   const std::string text = text_for_folder(session.study, folder);
   return edited(session, [&] {
     const std::string added = with_effect(text, effect_line(name, effect, roles, start));
-    return from ? with_held(added, from->held) : added;
+    return from ? with_held(added, session, with, from->held) : added;
   });
 }
 

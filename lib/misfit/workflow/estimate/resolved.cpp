@@ -76,8 +76,9 @@ class Resolved {
                     toml_list({toml_number(last.validation_from), toml_number(std::min(last.validation_to, last.t.back() + 1.0))}));
   }
 
-  /// Where the study writes it: under its name, or, without quotation marks, under the parts of a name with a point.
-  TomlPath path_of(const std::string& parameter) const {
+  /// Where the study writes it: under a name that it has for it, or, without quotation marks, under the parts of a name with a point.
+  TomlPath path_of(const std::string& in_model) const {
+    const std::string parameter = name_in_study(session_.study, names_, in_model);
     TomlPath path{"parameters", parameter};
     for (std::size_t point = parameter.find('.'); point != std::string::npos; point = parameter.find('.', point + 1)) {
       const TomlPath nested{"parameters", parameter.substr(0, point), parameter.substr(point + 1)};
@@ -97,23 +98,21 @@ class Resolved {
     set("free", p.free ? "true" : "false");
     set("value", toml_number(p.value));
     if (std::isfinite(p.lower) && std::isfinite(p.upper)) set("bounds", toml_list({toml_number(p.lower), toml_number(p.upper)}));
-    if (p.prior_sigma) set("sigma", toml_number(*p.prior_sigma));
+    if (p.prior_sigma && p.prior_mean == p.value) set("sigma", toml_number(*p.prior_sigma));
   }
 
-  /// In degrees for an angle; in radians where no number of degrees reads back to it.
-  static std::string knot_text(double knot, bool angle) {
-    if (!angle) return toml_number(knot);
-    const double near = knot / kDegree;
-    for (const double degrees : {near, std::nextafter(near, INFINITY), std::nextafter(near, -INFINITY)}) {
-      if (degrees * kDegree == knot) return toml_number(degrees);
+  /// In the unit that is shown, as a bare number is read; with the SI unit where no such number reads back to it.
+  static std::string knot_text(double knot, const std::string& unit) {
+    const double shown = convert_difference(1.0, display_unit(unit), unit), near = knot / shown;
+    for (const double bare : {near, std::nextafter(near, INFINITY), std::nextafter(near, -INFINITY)}) {
+      if (shown * bare == knot) return toml_number(bare);
     }
-    return toml_string(toml_number(knot) + " rad");
+    return toml_string(toml_number(knot) + " " + plain_si(unit));
   }
 
   void set_curve(const Curve& curve) {
-    const bool angle = curve.of_unit == "rad";  // else SI, which is what is shown
     std::vector<std::string> knots;
-    for (const double knot : curve.spline.breakpoints()) knots.push_back(knot_text(knot, angle));
+    for (const double knot : curve.spline.breakpoints()) knots.push_back(knot_text(knot, curve.of_unit));
     document_.set({"curves", curve.name, "of"}, toml_string(curve.of));
     document_.set({"curves", curve.name, "knots"}, toml_list(knots));
     document_.set({"curves", curve.name, "roughness"}, curve.roughness ? toml_number(*curve.roughness) : "\"auto\"");
@@ -145,6 +144,7 @@ class Resolved {
 
   const Session& session_;
   const Prepared& prepared_;
+  std::map<std::string, std::string> names_ = parameter_names(prepared_.request, session_.registry);
   TomlDocument document_;
   std::map<TomlPath, std::string> comments_;
 };
