@@ -45,11 +45,13 @@ MarkerDetections detections_in_video(const SweepPicture& picture, const Marker& 
   Video video(picture.file);
   MarkerDetections out;
   std::vector<double> count;
+  bool any = false;
   while (const auto frame = video.next()) {
     const VideoFacts& facts = video.facts();
     const double t = facts.variable && frame->time ? *frame->time : static_cast<double>(frame->number) / facts.rate;
     if (picture.from && t < *picture.from) continue;
     if (picture.to && t > *picture.to) break;
+    any = true;
     MarkerDetections now;
     detect_markers(frame->image, marker, now);
     if (count.empty()) {
@@ -67,7 +69,7 @@ MarkerDetections detections_in_video(const SweepPicture& picture, const Marker& 
       }
     }
   }
-  if (count.empty()) throw InputError(picture.where, "no frame of " + picture.file.filename().string() + " lies in this part");
+  if (!any) throw InputError(picture.where, "no frame of " + picture.file.filename().string() + " lies in this part");
   return out;
 }
 
