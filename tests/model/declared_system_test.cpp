@@ -410,6 +410,21 @@ TEST(DeclaredSystems, TheScaleOfAParameterIsItsTypicalSize) {
   EXPECT_EQ(scale("value = 0.0"), 1.0);
 }
 
+TEST(DeclaredSystems, AStartMovesNoPriorAndAValueWithItsSigmaDoes) {
+  const auto known = registry_with(replaced(duffing_text, "value = 10.0", "value = 10.0, sigma = 0.5, free = true"));
+  ModelRequest request = request_of("text");
+  request.parameters["gain"].value = 7.0;
+  const Model started = assemble(request, *known);
+  EXPECT_EQ(parameter_of(started, "gain").value, 7.0);
+  EXPECT_EQ(parameter_of(started, "gain").prior_mean, 10.0);
+  EXPECT_EQ(parameter_of(started, "gain").prior_sigma, 0.5);
+  request.constants["gain"] = 9.0;
+  EXPECT_EQ(parameter_of(assemble(request, *known), "gain").prior_mean, 9.0) << "of [geometry]";
+  request.parameters["gain"].sigma = 0.2;
+  EXPECT_EQ(parameter_of(assemble(request, *known), "gain").prior_mean, 7.0);
+  EXPECT_EQ(parameter_of(assemble(request, *known), "gain").prior_sigma, 0.2);
+}
+
 TEST(DeclaredSystems, SayWhereAFormulaIsNotDefined) {
   const auto known = registry_with(R"toml(
 [states]
@@ -525,6 +540,16 @@ TEST(DeclaredEffects, ASigmaIsAPriorAboutTheValueInEveryFit) {
           "extra", R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2", value = 2.0, sigma = 0.25 } } })toml"),
       known->system("text").make({})->spec());
   EXPECT_EQ(made->spec().coefficients.front().own_sigma, 0.25);
+  Registry with = Registry::over(*known);
+  with.add(declared_effect(
+      effect_in_one_line(
+          "extra", R"toml({ port = "dv/dt", formula = "c*y", parameters = { c = { unit = "1/s^2", value = 2.0, sigma = 0.25 } } })toml"),
+      known->system("text").make({})->spec()));
+  ModelRequest request = request_of("text", {effect("extra")});
+  request.parameters["c"].value = 3.0;
+  const Model model = assemble(request, with);
+  EXPECT_EQ(parameter_of(model, "c").value, 3.0);
+  EXPECT_EQ(parameter_of(model, "c").prior_mean, 2.0) << "a start is no value that is known";
 }
 
 }  // namespace

@@ -239,7 +239,7 @@ KeyGroup parameters_group() {
      "where two effects have one of the same name.",
      {{.name = "free", .type = Type::flag, .otherwise = "as the effect or system says", .meaning = "Estimated, or kept at its value."},
       {.name = "value", .type = Type::number, .unit = "of the parameter", .otherwise = "as the effect or system says",
-       .meaning = "Start of the estimation, or the value where it is fixed."},
+       .meaning = "Start of the estimation, or the value where it is fixed; with sigma the mean of the prior, without it no prior moves."},
       {.name = "bounds", .type = Type::numbers, .unit = "of the parameter", .otherwise = "as the effect or system says",
        .form = "list of 2 numbers",
        .meaning = "[lower, upper]: limits of the estimate."},

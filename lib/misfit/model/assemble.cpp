@@ -137,11 +137,13 @@ void Assembler::add_constants() {
     p.free = constant.free;
     if (constant.prior_sigma > 0.0) p.prior_sigma = constant.prior_sigma;
     if (constant.strength) p.kind = CoefficientKind::strength;
+    const bool known = given != request_.constants.end() || !constant.required;
+    if (known) p.prior_mean = p.value;
     if (valued) p.value = *asked->second.value;
+    if (!known) p.prior_mean = p.value;
     p.scale = typical_size(constant, p.value);
     const auto sigma = request_.constant_sigmas.find(constant.name);
     if (sigma != request_.constant_sigmas.end()) p.prior_sigma = sigma->second;
-    p.prior_mean = p.value;
     apply_request(p);
     model_.parameters.push_back(p);
   }
@@ -169,8 +171,10 @@ void Assembler::apply_request(Parameter& p) {
   if (r.value) p.value = *r.value;
   if (r.value && !std::isfinite(p.lower) && !std::isfinite(p.upper)) p.scale = std::max(p.scale, std::abs(p.value));
   if (r.free) p.free = *r.free;
-  if (r.sigma) p.prior_sigma = r.sigma;
-  p.prior_mean = p.value;
+  if (r.sigma) {  // else the value is a start: who gave the sigma gave the mean
+    p.prior_sigma = r.sigma;
+    p.prior_mean = p.value;
+  }
   if (!(p.lower < p.upper))
     throw InputError(r.where,
                      "bounds of " + p.name + " must increase: [" + with_unit(p.lower, p.unit) + ", " + with_unit(p.upper, p.unit) + "]");

@@ -24,7 +24,7 @@ struct CurveRequest {
 /// What a study says of one parameter, in SI.
 struct ParameterRequest {
   std::optional<bool> free;
-  std::optional<double> value, lower, upper, sigma;  ///< sigma: Gaussian prior about `value`
+  std::optional<double> value, lower, upper, sigma;  ///< sigma: Gaussian prior about `value`, which alone moves none
   Source where;
 };
 

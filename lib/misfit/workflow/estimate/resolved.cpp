@@ -98,7 +98,7 @@ class Resolved {
     set("free", p.free ? "true" : "false");
     set("value", toml_number(p.value));
     if (std::isfinite(p.lower) && std::isfinite(p.upper)) set("bounds", toml_list({toml_number(p.lower), toml_number(p.upper)}));
-    if (p.prior_sigma) set("sigma", toml_number(*p.prior_sigma));
+    if (p.prior_sigma && p.prior_mean == p.value) set("sigma", toml_number(*p.prior_sigma));
   }
 
   /// In the unit that is shown, as a bare number is read; with the SI unit where no such number reads back to it.
