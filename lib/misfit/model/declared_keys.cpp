@@ -88,10 +88,10 @@ std::vector<KeyGroup> formula_groups() {
 
 KeyGroup role_group() {
   return {"roles", "What generic effects act on where a study does not say it.",
-     {{.name = "rate", .otherwise = "rate of port, else the first state with rate_of",
+     {{.name = "rate", .otherwise = "rate of port, else the first state with rate_of, else the first",
        .meaning = "Quantity: rate of the motion (friction)."},
       {.name = "level", .otherwise = "the state whose rate it is", .meaning = "Quantity: displacement or level."},
-      {.name = "content", .otherwise = "the first state, if it is the rate of nothing", .meaning = "Quantity: what its port fills, for a leak."},
+      {.name = "content", .otherwise = "that of rate, if it is the rate of nothing", .meaning = "Quantity: what its port fills, for a leak."},
       {.name = "port", .otherwise = "the first of [ports], else of force_ports, else of the equations", .meaning = "Dynamic port."},
       {.name = "input", .otherwise = "the first input", .meaning = "Input or quantity."},
       {.name = "output", .otherwise = "the first output", .meaning = "Output that sensor effects change."},
