@@ -84,6 +84,17 @@ TEST(ResolvedText, OfAParameterUnderItsOtherNameIsAStudyAgain) {
   }
 }
 
+TEST(ResolvedText, KeepsAPriorWhereItIsAndAStartBesideIt) {
+  const auto both = models(
+      "drag = { formula = \"-c*omega\", port = \"domega/dt\", start = { c = 3 }, parameters = { c = { unit = \"1/s\", value "
+      "= 2, sigma = 0.5 } } }");
+  expect_same(both);
+  const Parameter& c = both.second.parameters[both.second.find_parameter("c")];
+  EXPECT_EQ(c.value, 3.0);
+  EXPECT_EQ(c.prior_mean, 2.0);
+  EXPECT_EQ(c.prior_sigma, 0.5);
+}
+
 TEST(ResolvedText, KeepsTheKnotsOfACurveOverARate) {
   for (const char* knots : {"[-180, 0, 33.3, 180]", "[\"-3.1 rad/s\", \"0 rad/s\", \"0.7 rad/s\", \"3.1 rad/s\"]"}) {
     const auto [model, again] = models(drag + std::string("[curves]\nc = { of = \"omega\", knots = ") + knots + " }");
