@@ -75,7 +75,7 @@ TEST(ShownFit, ASmoothedCurveHasItsEffectiveDegreesOfFreedomBesideItsRange) {
     curve.informative = true, curve.of = "alpha_T", curve.of_unit = "rad", curve.x = {0.1}, curve.count = {9.0};
   fit.facts[freedom_fact("C_m")] = "4.2";
   const std::string text = as_text(blocks_of(std::vector{fit}));
-  expect_parts(text, {"from 5.7 to 5.7 deg of alpha_T; 4.2 effective degrees of freedom", "curve C_mq"});
+  expect_parts(text, {"from 5.73 to 5.73 deg of alpha_T; 4.2 effective degrees of freedom", "curve C_mq"});
   EXPECT_EQ(text.find("effective degrees"), text.rfind("effective degrees"));
 }
 

@@ -41,7 +41,7 @@ TableBlock whiteness_table(const Diagnosis& d) {
   TableBlock table{columns("innovations of|>Ljung-Box p|>lags|>periodogram p|largest spectral line|>p of the line")};
   for (const WhitenessReport& w : d.whiteness) {
     table.rows.push_back({w.experiment + " " + w.channel, format_probability(w.ljung_box_p), std::to_string(w.lags),
-                          format_probability(w.periodogram_p), fmt::format("{:.3f} Hz, {:.1f} times white", w.peak_frequency, w.peak_power),
+                          format_probability(w.periodogram_p), fmt::format("{:.4g} Hz, {:.1f} times white", w.peak_frequency, w.peak_power),
                           format_probability(w.peak_p)});
   }
   return table;
