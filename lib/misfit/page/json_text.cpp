@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "misfit/core/enum_name.h"
+#include "misfit/report/extent.h"
 #include "misfit/report/symbols.h"
 
 namespace misfit::page {
@@ -133,6 +134,8 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 
 std::string json_numbers(const std::vector<double>& values, int digits) {
   fmt::memory_buffer out;
+  constexpr int all = 17;
+  digits = std::min(digits + report::digits_before_span(report::extent_of(values)), all);
   out.push_back('[');
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i > 0) out.push_back(',');

@@ -15,7 +15,7 @@ namespace misfit::page {
 /// Text for readers, typeset as in the report (report/symbols.h): "plain", or [["α", 0], ["T", -1]] (−1: below the line, 1: above it).
 [[nodiscard]] std::string json_words(const std::string& text);
 [[nodiscard]] std::string json_number(double value);
-/// To `digits` significant digits.
+/// To `digits` significant digits, and as many more as the values have in common (1.7e9 s and what follows).
 [[nodiscard]] std::string json_numbers(const std::vector<double>& values, int digits = 6);
 /// [a,b,…] of texts that are JSON.
 [[nodiscard]] std::string json_list(const std::vector<std::string>& items);

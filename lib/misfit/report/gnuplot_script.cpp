@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/report/extent.h"
 #include "misfit/report/gnuplot_series.h"
 #include "misfit/report/symbols.h"
 
@@ -143,7 +144,7 @@ std::string plot_command(const Figure& figure, const Panel& panel, std::size_t& 
     const std::string text = plot_clause(figure, s, column);
     if (!text.empty()) clauses.push_back(text);
     any = any || has_data(s);
-    column += columns_of(s).size();
+    column += columns_written(s);
   }
   if (!any) {
     clauses.insert(clauses.begin(), "NaN notitle");
@@ -153,8 +154,15 @@ std::string plot_command(const Figure& figure, const Panel& panel, std::size_t& 
   return fmt::format("unset label 1\nplot {}\n", fmt::join(clauses, ", \\\n     "));
 }
 
+/// gnuplot's format of the numbers beside an axis: with the digits that tell neighbours apart where `usual`, of six digits, has too few.
+std::string tics_format(const Range& range, const std::string& usual) {
+  constexpr int between_tics = 2, of_usual = 6;
+  const int digits = digits_before_span(range) + between_tics;
+  return digits > of_usual ? fmt::format("%.{}g", digits) : usual;
+}
+
 std::string range_text(const std::optional<Range>& range) {
-  return range ? fmt::format("[{:.9g}:{:.9g}]", (*range)[0], (*range)[1]) : "[*:*]";
+  return range ? fmt::format("[{:.17g}:{:.17g}]", (*range)[0], (*range)[1]) : "[*:*]";
 }
 
 std::string head(const Figure& figure, double width, double height) {
@@ -223,6 +231,18 @@ Margins margins_of_panel(const Figure& figure, const Panel& panel, double width)
   return m;
 }
 
+/// What is drawn along y.
+Range y_extent_of(const Panel& panel) {
+  if (panel.y_range) return *panel.y_range;
+  std::vector<const std::vector<double>*> columns;
+  for (const Series& s : panel.series) {
+    for (const auto& [name, values] : columns_of(s)) {
+      if (!along_x(s.style, name) && values != &s.z) columns.push_back(values);
+    }
+  }
+  return finite_range(columns);
+}
+
 std::string panel_text(const Figure& figure, std::size_t k, const Place& place, const Size& size) {
   const auto [width, height] = size;
   const Panel& panel = figure.panels[k];
@@ -244,13 +264,15 @@ std::string panel_text(const Figure& figure, std::size_t k, const Place& place, 
                              : !panel.y_marks.empty() ? marks_text(panel.y_marks)
                              : panel.y_step > 0.0     ? fmt::format("{}", panel.y_step)
                                                       : "autofreq";
-  text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\n", axis_text(panel.y_label, panel.y_unit), y_tics);
+  text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\nset format y '{}'\n", axis_text(panel.y_label, panel.y_unit), y_tics,
+                      tics_format(y_extent_of(panel), "% h"));
   text += colours_text(figure, panel);
   if (!lowest)
     return text + "unset xlabel\nset format x ''\n" +
            (figure.x_marks.empty() ? "" : "set xtics " + marks_text(blank(figure.x_marks)) + "\n");
   if (panel.beside) return text + fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(panel.beside->label, ""));
-  text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(figure.x_label, figure.x_unit));
+  text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '{}'\n", axis_text(figure.x_label, figure.x_unit),
+                      tics_format(x_range_of(figure), "%g"));
   if (figure.x_marks.empty()) return text;
   return text + fmt::format("set xtics {} {}\n", m.slanted ? "rotate by -20 left" : "norotate center", marks_text(figure.x_marks));
 }
