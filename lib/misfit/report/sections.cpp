@@ -155,12 +155,8 @@ void provenance_section(const ReportInput& input, Page& page) {
   for (const auto& [file, hash] : run.hashes) files.rows.push_back({file, hash});
   TableBlock stages{columns("stage|>time [s]")};
   for (const auto& [stage, seconds] : run.stages) stages.rows.push_back({stage, fmt::format("{:.2f}", seconds)});
-  Blocks out;
-  out.heading("Provenance");
-  out.table(std::move(facts));
-  out.table(std::move(files));
-  out.table(std::move(stages));
-  page.show(out);
+  page.section("Provenance");
+  for (const TableBlock& table : {facts, files, stages}) page.table(table, Texts::as_written);
 }
 
 }  // namespace misfit::report
