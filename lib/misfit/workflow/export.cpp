@@ -209,6 +209,7 @@ ExportReport export_stage(const SessionOptions& options, const Registry& registr
   const bool code = format.name == std::string("c") || format.name == std::string("python");
   if (code) out.lack = opened.exported.model ? model_formulas(*opened.exported.model).lack : "it has no model";
   out.exported = std::move(opened.exported);
+  if (format.name == std::string("jsbsim")) out.left_out = effects_not_in_jsbsim(opened.exported);
   return out;
 }
 
