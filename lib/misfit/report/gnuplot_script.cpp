@@ -49,21 +49,6 @@ std::size_t letters(const std::string& text) {
   return count;
 }
 
-Margins margins_of(const Figure& figure) {
-  constexpr double letter = 7.2;
-  Margins m{left, right, bottom, false};
-  for (const Panel& panel : figure.panels) {
-    for (const Mark& mark : panel.y_marks) m.left = std::max(m.left, 30.0 + letter * static_cast<double>(letters(mark.text)));
-    for (const Series& s : panel.series) m.right = s.style == Style::cells ? colour_bar : m.right;
-  }
-  std::size_t longest = 0;
-  for (const Mark& mark : figure.x_marks) longest = std::max(longest, letters(mark.text));
-  const double room = (full_width - m.left - m.right) / static_cast<double>(std::max<std::size_t>(figure.x_marks.size(), 1));
-  m.slanted = letter * static_cast<double>(longest) > room;
-  if (m.slanted) m.bottom += 0.35 * letter * static_cast<double>(longest);
-  return m;
-}
-
 Place place_panel(const Panel& panel, double top, double width) {
   std::size_t entries = 0;
   std::size_t longest = 0;
@@ -94,6 +79,60 @@ Range finite_range(const std::vector<const std::vector<double>*>& columns) {
   if (range[0] > range[1]) return {0.0, 1.0};
   if (range[0] == range[1]) return {range[0] - 0.5, range[1] + 0.5};
   return range;
+}
+
+/// What is drawn along y.
+Range y_extent_of(const Panel& panel) {
+  if (panel.y_range) return *panel.y_range;
+  std::vector<const std::vector<double>*> columns;
+  for (const Series& s : panel.series) {
+    for (const auto& [name, values] : columns_of(s)) {
+      if (!along_x(s.style, name) && values != &s.z) columns.push_back(values);
+    }
+  }
+  return finite_range(columns);
+}
+
+/// Digits of the numbers beside an axis that tell neighbours apart, where the six of gnuplot's own formats are too few; else 0.
+int digits_of_tics(const Range& range) {
+  constexpr int between_tics = 2, usual = 6, all = 15;
+  const int digits = digits_before_span(range) + between_tics;
+  if (digits <= usual) return 0;
+  const int whole = static_cast<int>(std::ceil(std::log10(std::max(std::abs(range[0]), std::abs(range[1])))));
+  return std::min(std::max(digits, whole), all);
+}
+
+std::string tics_format(const Range& range, const std::string& usual) {
+  const int digits = digits_of_tics(range);
+  return digits > 0 ? fmt::format("%.{}g", digits) : usual;
+}
+
+/// As many marks on the x axis as long numbers find room; empty: gnuplot's own choice.
+std::string x_tics_text(const Range& range, double width) {
+  const int digits = digits_of_tics(range);
+  if (digits == 0) return "";
+  constexpr double letter = 8.0, between = 3.0;
+  const double least = (range[1] - range[0]) * letter * (digits + between) / width, decade = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10.0 * decade;
+  for (const double part : {5.0, 2.0}) step = part * decade >= least ? part * decade : step;
+  return fmt::format("set xtics {:.15g}\n", step);
+}
+
+Margins margins_of(const Figure& figure) {
+  constexpr double letter = 7.2;
+  Margins m{left, right, bottom, false};
+  for (const Panel& panel : figure.panels) {
+    for (const Mark& mark : panel.y_marks) m.left = std::max(m.left, 30.0 + letter * static_cast<double>(letters(mark.text)));
+    const int digits = panel.y_marks.empty() ? digits_of_tics(y_extent_of(panel)) : 0;
+    if (digits > 0) m.left = std::max(m.left, 60.0 + letter * digits);
+    for (const Series& s : panel.series) m.right = s.style == Style::cells ? colour_bar : m.right;
+  }
+  std::size_t longest = 0;
+  for (const Mark& mark : figure.x_marks) longest = std::max(longest, letters(mark.text));
+  const double room = (full_width - m.left - m.right) / static_cast<double>(std::max<std::size_t>(figure.x_marks.size(), 1));
+  m.slanted = letter * static_cast<double>(longest) > room;
+  if (m.slanted) m.bottom += 0.35 * letter * static_cast<double>(longest);
+  return m;
 }
 
 /// Both edges of cells about `middle`.
@@ -152,13 +191,6 @@ std::string plot_command(const Figure& figure, const Panel& panel, std::size_t& 
                        fmt::join(clauses, ", \\\n     "));
   }
   return fmt::format("unset label 1\nplot {}\n", fmt::join(clauses, ", \\\n     "));
-}
-
-/// gnuplot's format of the numbers beside an axis: with the digits that tell neighbours apart where `usual`, of six digits, has too few.
-std::string tics_format(const Range& range, const std::string& usual) {
-  constexpr int between_tics = 2, of_usual = 6;
-  const int digits = digits_before_span(range) + between_tics;
-  return digits > of_usual ? fmt::format("%.{}g", digits) : usual;
 }
 
 std::string range_text(const std::optional<Range>& range) {
@@ -231,18 +263,6 @@ Margins margins_of_panel(const Figure& figure, const Panel& panel, double width)
   return m;
 }
 
-/// What is drawn along y.
-Range y_extent_of(const Panel& panel) {
-  if (panel.y_range) return *panel.y_range;
-  std::vector<const std::vector<double>*> columns;
-  for (const Series& s : panel.series) {
-    for (const auto& [name, values] : columns_of(s)) {
-      if (!along_x(s.style, name) && values != &s.z) columns.push_back(values);
-    }
-  }
-  return finite_range(columns);
-}
-
 std::string panel_text(const Figure& figure, std::size_t k, const Place& place, const Size& size) {
   const auto [width, height] = size;
   const Panel& panel = figure.panels[k];
@@ -267,6 +287,7 @@ std::string panel_text(const Figure& figure, std::size_t k, const Place& place, 
   text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\nset format y '{}'\n", axis_text(panel.y_label, panel.y_unit), y_tics,
                       tics_format(y_extent_of(panel), "% h"));
   text += colours_text(figure, panel);
+  if (figure.x_marks.empty() && !has_columns(figure)) text += x_tics_text(x_range_of(figure), width - m.left - m.right);
   if (!lowest)
     return text + "unset xlabel\nset format x ''\n" +
            (figure.x_marks.empty() ? "" : "set xtics " + marks_text(blank(figure.x_marks)) + "\n");
