@@ -126,8 +126,7 @@ class VerdictBuilder {
     out_.next = next;
   }
   [[nodiscard]] std::string command(const std::string& verb, const std::string& effect = "") const {
-    return "misfit " + verb + " " + shell_word(in_.study) + (effect.empty() ? "" : " " + effect) +
-           (in_.out.empty() ? "" : " --out " + shell_word(in_.out));
+    return misfit_command(verb, in_.study, effect, in_.out);
   }
 
   [[nodiscard]] static std::string at_place(const std::map<std::string, std::string>& roles) {
