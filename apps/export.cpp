@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "apps/verbs.h"
+#include "misfit/core/text.h"
 
 namespace misfit {
 
@@ -12,6 +13,8 @@ int export_verb(const Options& options, const Registry& registry) {
   if (!options.quiet) {
     std::cerr << "exporting the estimate by " << exported.fit.method << (exported.rung.empty() ? "" : " of " + exported.rung) << '\n';
     if (!report.lack.empty()) std::cerr << "note: curves and parameters without a right-hand side: " << report.lack << '\n';
+    if (!report.left_out.empty())
+      std::cerr << "note: effects of the model that are not in the file: " << join_words(report.left_out) << '\n';
   }
   std::cout << report.text;
   for (const auto& file : report.files) std::cout << file.lexically_normal().string() << '\n';

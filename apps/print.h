@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/progress.h"
@@ -47,5 +49,7 @@ inline void print_verdict(const Verdict& verdict, const std::filesystem::path& p
 
 /// The content of a result file, to stdout: for --json.
 inline void print_file(const std::filesystem::path& path) { std::cout << read_file(path); }
+/// The same of JSON files by name: one as it is, several as members of one object.
+void print_files(const std::vector<std::pair<std::string, std::filesystem::path>>& files);
 
 }  // namespace misfit

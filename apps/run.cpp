@@ -4,6 +4,8 @@
 #include "apps/print.h"
 #include "apps/verbs.h"
 #include "misfit/compare/compare.h"
+#include "misfit/core/shell_word.h"
+#include "misfit/core/shown.h"
 #include "misfit/data/estimators.h"
 #include "misfit/workflow/ladder.h"
 
@@ -104,7 +106,8 @@ int run_verb(const Options& options, const Registry& registry) {
   }
   print_verdict(verdict_of(session, fits), page);
   if (session.study.uncertainty && !known_uncertainty(session) && !known_resampling(session))
-    std::cout << "  [uncertainty] is not part of `run`; start it with: misfit uncertainty " << options.session.study << '\n';
+    std::cout << "  [uncertainty] is not part of `run`; start it with: "
+              << printable(misfit_command("uncertainty", options.session.study, "", options.session.out)) << '\n';
   return status_of(fits);
 }
 

@@ -14,13 +14,15 @@ int track_verb(const Options& options, const Registry& registry) {
   if (tracked.empty())
     throw InputError({session.study.file.string(), 0, 0}, "no experiment of the study has a video: there is nothing to track");
   if (!options.check_video.empty()) write_check_video(session, tracked.front(), options.check_video);
+  if (options.json) {
+    std::vector<std::pair<std::string, std::filesystem::path>> files;
+    for (const TrackedMarker& marker : tracked) files.emplace_back(marker.name, marker.files.facts);
+    print_files(files);
+    return 0;
+  }
   for (const TrackedMarker& marker : tracked) {
-    if (options.json) {
-      print_file(marker.files.facts);
-    } else {
-      print(marker.name, marker.facts);
-      std::cout << "  " << marker.files.track.string() << "\n  " << marker.files.sheet.string() << '\n';
-    }
+    print(marker.name, marker.facts);
+    std::cout << "  " << marker.files.track.string() << "\n  " << marker.files.sheet.string() << '\n';
   }
   return 0;
 }

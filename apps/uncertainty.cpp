@@ -24,10 +24,14 @@ int uncertainty_verb(const Options& options, const Registry& registry) {
   if (resampling) again = resampling_stage(session);
   if (!ranks().first()) return 0;
   if (options.json) {
-    print_file(session.folder.file(perturbs_rig                ? "uncertainty.json"
-                                   : !again.bootstraps.empty() ? "bootstrap.json"
-                                   : !again.profiles.empty()   ? "profile.json"
-                                                               : "starts.json"));
+    std::vector<std::pair<std::string, std::filesystem::path>> files;
+    for (const auto& [there, name] : {std::pair{perturbs_rig, "uncertainty"},
+                                      {!again.bootstraps.empty(), "bootstrap"},
+                                      {!again.profiles.empty(), "profile"},
+                                      {!again.starts.empty(), "starts"}}) {
+      if (there) files.emplace_back(name, session.folder.file(name + std::string(".json")));
+    }
+    print_files(files);
   } else {
     if (perturbs_rig) print(result);
     print(again);

@@ -53,9 +53,7 @@ void add_study(CLI::App& verb, Options& options) {
   verb.add_option("study", options.session.study, "study.toml, or the folder that holds it")->type_name("STUDY")->required();
 }
 
-void add_verbose(CLI::App& verb, Options& options) {
-  verb.add_flag("--verbose", options.verbose, "print the tables of every stage instead of a line");
-}
+void add_verbose(CLI::App& verb, Options& options, const std::string& doc) { verb.add_flag("--verbose", options.verbose, doc); }
 
 void add_force(CLI::App& verb, Options& options) {
   verb.add_flag("--force", options.session.force, "overwrite files that misfit did not write (never data, never through links)");
@@ -86,17 +84,28 @@ void add_round_limit(CLI::App& verb, Options& options) {
       ->check(seconds_check());
 }
 
-void add_work(CLI::App& verb, Options& options) {
+/// Of a verb that works in a run folder, whatever the methods.
+void add_work_alone(CLI::App& verb, Options& options) {
   verb.add_option("--out", options.session.out, "run folder (default: out/ beside the study)")->type_name("DIR");
   add_force(verb, options);
-  add_method(verb, options);
   add_running(verb, options);
+}
+
+void add_work(CLI::App& verb, Options& options) {
+  add_work_alone(verb, options);
+  add_method(verb, options);
 }
 
 // The options of each verb.
 void study_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
   add_work(verb, options);
+}
+
+/// Of a stage before all fits.
+void measure_options(CLI::App& verb, Options& options) {
+  add_study(verb, options);
+  add_work_alone(verb, options);
 }
 
 void fit_options(CLI::App& verb, Options& options) {
@@ -107,12 +116,12 @@ void fit_options(CLI::App& verb, Options& options) {
 void run_options(CLI::App& verb, Options& options) {
   fit_options(verb, options);
   add_round_limit(verb, options);
-  add_verbose(verb, options);
+  add_verbose(verb, options, "print the tables of every stage instead of a line");
   verb.add_flag("--auto", options.automatic, "also add what discover accepts and search again, until nothing is accepted");
 }
 
 void track_options(CLI::App& verb, Options& options) {
-  study_options(verb, options);
+  measure_options(verb, options);
   verb.add_option("--check-video", options.check_video, "also write the video with the track drawn on it (.avi, .mp4 or .mkv)")
       ->type_name("FILE");
 }
@@ -123,7 +132,7 @@ void discover_options(CLI::App& verb, Options& options) {
   add_work(verb, options);
   add_time_limit(verb, options);
   add_round_limit(verb, options);
-  add_verbose(verb, options);
+  add_verbose(verb, options, "with --auto: print the tables of every round instead of a line");
 }
 
 void added_effect_options(CLI::App& verb, Options& options) {
@@ -235,8 +244,8 @@ struct VerbEntry {
 /// In any order: verb_texts() has the one in which they are listed.
 constexpr VerbEntry verbs[] = {{"run", run_verb, run_options},
                                {"track", track_verb, track_options},
-                               {"calibrate", calibrate_verb, study_options},
-                               {"attitude", attitude_verb, study_options},
+                               {"calibrate", calibrate_verb, measure_options},
+                               {"attitude", attitude_verb, measure_options},
                                {"fit", fit_verb, fit_options},
                                {"diagnose", diagnose_verb, fit_options},
                                {"discover", discover_verb, discover_options},

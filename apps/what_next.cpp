@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
 
+#include "misfit/core/shell_word.h"
 #include "misfit/core/shown.h"
 
 namespace misfit {
@@ -31,19 +31,12 @@ Found look(const fs::path& folder) {
   return out;
 }
 
-/// As a shell takes it.
-std::string argument(const std::string& name) {
-  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' || c == '/' || (c & 0x80) != 0;
-  });
-  return plain ? shown(name) : "'" + shown(name) + "'";
-}
-
 /// One command per name, five at most.
 std::string commands(const std::vector<std::string>& names, const char* before) {
   constexpr std::size_t most = 5;
   std::string out;
-  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) out += fmt::format("  misfit {} {}\n", before, argument(names[i]));
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+    out += fmt::format("  misfit {} {}\n", before, printable(shell_word(names[i])));
   if (names.size() > most) out += fmt::format("  … and {} more\n", names.size() - most);
   return out;
 }
@@ -71,8 +64,8 @@ std::string what_next(const fs::path& folder, const fs::path& examples) {
   if (!study && found.studies.empty() && found.tables.empty()) {
     out += "No study and no CSV file in this folder. With a recording of your own (a header line, then numbers):\n  misfit init DATA.csv\n";
     if (!examples.empty())
-      out +=
-          fmt::format("An example that came with misfit:\n  cp -r {}/cascaded_tanks . && misfit run cascaded_tanks\n", examples.string());
+      out += fmt::format("An example that came with misfit:\n  cp -r {} . && misfit run cascaded_tanks\n",
+                         shell_word((examples / "cascaded_tanks").string()));
   }
   return out + "\nmisfit help lists verbs and topics; misfit help words says what its words mean.\n";
 }

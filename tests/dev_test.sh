@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# What ./dev install does on machines with and without the packages, with apt-get, dpkg-query and sudo replaced by stubs that note their calls.
+# What ./dev install does on machines with and without the packages, with apt-get, dpkg-query and sudo replaced by stubs that note their calls;
+# which files the checks of format and clang-tidy get. The folder has a character that means something in a regular expression.
 set -u
 source_dir=$(cd "$(dirname "$0")/.." && pwd)
-work=$(mktemp -d)
+work=$(mktemp -d -t 'dev+XXXXXX')
 trap 'rm -rf "$work"' EXIT
 failures=0
 
@@ -84,6 +85,40 @@ expect "unknown verb: status" "$status" 2
 expect "unknown verb: named" "$(grep -c 'no verb "tset"' <<< "$output")" 1
 dev
 expect "no verb: help" "$status $(grep -c './dev test' <<< "$output")" "0 1"
+
+# touched FILE…: of nothing, in the repository.
+touched() { for file in "$@"; do mkdir -p "$(dirname "$work/repo/$file")" && touch "$work/repo/$file"; done; }
+
+machine 0 no
+touched lib/a.cpp apps/b.h build/c.cpp .hidden/d.cpp
+stub git "echo 'fatal: not a git repository' >&2; exit 128"
+stub clang-format-16 "printf '%s\n' \"\$@\" >> '$work/calls'"
+stub cmake "exit 1"
+dev test
+expect "without git: the format is checked all the same" "$(grep -c 'format: done' <<< "$output")" 1
+expect "without git: of all files but what is built" "$(grep '\.[a-z]*$' "$work/calls" | xargs)" "apps/b.h lib/a.cpp"
+stub clang-format-16 "echo 'lib/a.cpp:3:4: error: code should be clang-formatted' >&2; exit 1"
+dev test
+expect "without git: what is not formatted is named" "$status $(grep -cx lib/a.cpp <<< "$output")" "1 1"
+
+# compiled FOLDER: lib/a.cpp of it, as CMake writes it for clang-tidy.
+compiled() {
+  mkdir -p "$work/repo/build/tidy"
+  printf '[{\n  "directory": "/",\n  "command": "/usr/bin/c++ -DX=1 -o a.o -c a.cpp",\n  "file": "%s/lib/a.cpp"\n}]\n' "$1" \
+    > "$work/repo/build/tidy/compile_commands.json"
+}
+machine 0 no
+touched lib/a.cpp .clang-tidy
+stub git "echo lib/a.cpp"
+stub cmake "exit 0"
+stub clang++-16 "exit 0"
+stub clang-tidy-16 "echo tidied >> '$work/calls'"
+compiled "$work/repo"
+dev tidy
+expect "tidy: checks what is compiled, whatever the folder is called" "$status $(cat "$work/calls")" "0 tidied"
+compiled /elsewhere
+dev tidy
+expect "tidy: fails where nothing is compiled" "$status $(grep -c 'names no file of' <<< "$output")" "1 1"
 
 ((failures == 0)) && echo "dev: as expected"
 exit $((failures > 0))

@@ -105,6 +105,10 @@ TEST(NoVerb, SaysWhatToDoNext) {
   expect_parts(here(), {"No study and no CSV file in this folder", "misfit init DATA.csv", "misfit help"});
   folder.write("my motor.csv", "t,u,y\n");
   expect_parts(here(), {"misfit init 'my motor.csv'"});
+  const std::string apostrophe = "the pendulum's recording of the thirteenth of November.csv";
+  folder.write(apostrophe, "t,u,y\n");
+  expect_parts(here(), {"misfit init 'the pendulum'\\''s recording of the thirteenth of November.csv'"});
+  fs::remove(folder.path() / apostrophe);
   fs::create_directories(folder.path() / "flight");
   folder.write("flight/study.toml", "");
   expect_parts(here(), {"misfit run flight", "misfit init 'my motor.csv'"});

@@ -54,6 +54,10 @@ TEST(Resampling, OfEveryMethodThatCanBeFittedAgain) {
   const auto when = fs::last_write_time(study.out("bootstrap.json"));
   EXPECT_EQ(study.uncertainty({}).out, outcome.out);
   EXPECT_EQ(fs::last_write_time(study.out("bootstrap.json")), when) << "done once";
+  const json printed = json::parse(study.uncertainty({"--json"}).out);
+  EXPECT_EQ(printed.size(), 2U);
+  EXPECT_EQ(printed.at("bootstrap"), study.result("bootstrap.json"));
+  EXPECT_EQ(printed.at("profile"), profiles);
 
   ASSERT_EQ(study.run("report").status, 0);
   expect_parts(content(study.out("report.html")), {"Bootstrap, profile likelihood and random starts", "Block bootstrap: C_m",

@@ -144,6 +144,18 @@ TEST(GeneratedCode, AgreesWithEffectsOnEveryKindOfPort) {
                    *known, 3);
 }
 
+TEST(GeneratedCode, NamesMemoryAndLateInputsAndSaysThatShiftsOfTimeAddUp) {
+  const auto known = registry_with(duffing_text);
+  const ModelRequest request = request_of("text", {effect("delay", {{"input", "u"}}), effect("hysteresis"), effect("time_offset"),
+                                                   effect("sensor_clock", {{"time_of_output", "sample_time_y"}})});
+  const Exported exported{"a study", "", "misfit", {}, assemble(request, *known)};
+  const std::string text = python_source(exported);
+  const Model& model = *exported.model;
+  ASSERT_FALSE(model.own_state_names.empty());
+  EXPECT_THAT(text, testing::HasSubstr(", \"" + model.own_state_names.back() + "\"]\ninputs = [\"u\", \"u_late\"]"));
+  EXPECT_THAT(text, testing::HasSubstr("y[0] belongs to the time t + sample_time + sample_time_y."));
+}
+
 TEST(GeneratedCode, AgreesWithAnEffectDeclaredInTheStudy) {
   auto known = registry_with(duffing_text);
   const SystemSpec spec = known->system("text").make({})->spec();

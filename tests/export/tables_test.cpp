@@ -116,6 +116,19 @@ TEST(JsbSim, TablesHoldTheCurves) {
   EXPECT_EQ(below, static_cast<int>(rows.size() - 2) / 2) << "both sides of 0, and 0 in each table";
 }
 
+TEST(JsbSim, ADampingThatIsANumberIsAValueAndOtherEffectsAreNamed) {
+  ModelRequest request = parachute(true, {effect("coulomb_friction")});
+  request.curves.erase("C_mq");
+  request.parameters["C_mq"].value = -0.25;
+  Exported exported{"", "", "", {}, assemble(request, registry())};
+  exported.fit.parameters["C_mq"] = {-0.2505, 0.01, "-"};
+  const std::string text = jsbsim_text(exported);
+  EXPECT_THAT(text, testing::HasSubstr("<property>velocities/q-aero-rad_sec</property>\n          <value>-0.2505"));
+  EXPECT_THAT(effects_not_in_jsbsim(exported), testing::Contains("coulomb_friction"));
+  EXPECT_THAT(effects_not_in_jsbsim(exported), testing::Not(testing::Contains("pitch_damping")));
+  EXPECT_THAT(text.substr(0, text.find("-->")), testing::HasSubstr("not in this file: "));
+}
+
 TEST(JsbSim, RefusesAModelWithoutSuchCurves) {
   Exported exported{"", "", "", {}, assemble(request_of("cascaded_tanks"), registry())};
   EXPECT_THROW(static_cast<void>(jsbsim_text(exported)), InputError);

@@ -68,6 +68,16 @@ TEST(NumbersAsJson, AreNullWhereTheyAreNotFinite) {
   EXPECT_EQ(json_number(nan), "null");
 }
 
+TEST(NumbersAsJson, AreToldApartWhereTheyDifferByLittleBesideWhatTheyAre) {
+  EXPECT_EQ(json_numbers({1.7e9, 1.7e9 + 0.25, 1.7e9 + 1.5}), "[1700000000,1700000000.25,1700000001.5]");
+}
+
+TEST(BlocksAsJson, GiveCommandsLetterByLetter) {
+  Blocks blocks;
+  blocks.paragraph("misfit add study drag --at incidence=alpha_T", Tone::command);
+  EXPECT_EQ(json::parse(json_of(blocks))[0]["text"], "misfit add study drag --at incidence=alpha_T");
+}
+
 TEST(BlocksAsJson, AreTheSameList) {
   Blocks blocks;
   blocks.heading("Title");

@@ -155,6 +155,18 @@ TEST(LadderFigure, ChannelsOfOneSystemKeepTheirUnits) {
   EXPECT_EQ(find(figure, "P_y_RMS__1_step")->y, (std::vector<double>{1.78, 1.76}));
 }
 
+TEST(LadderFigure, RandomForcesOfDifferentUnitsHaveAPanelEach) {
+  Ladder one = ladder();
+  for (Rung& r : one.rungs) r.force["drag"] = {10.0 - r.id, 0.1, "N"};
+  const Figure figure = ladder_figure(one);
+  std::vector<std::string> labels;
+  for (const Panel& panel : figure.panels) labels.push_back(panel.y_label);
+  EXPECT_EQ(labels[1], "random force on drag");
+  EXPECT_EQ(labels[2], "random force on pitching_moment");
+  EXPECT_EQ(figure.panels[1].series[0].y, (std::vector<double>{10.0, 9.0, 8.0}));
+  EXPECT_EQ(figure.panels[2].series[0].y, (std::vector<double>{35.0, 31.0, 26.9}));
+}
+
 TEST(LadderFigure, ASmallChangeIsSeenAndDoesNotLookLarge) {
   Ladder one = ladder();
   one.rungs.erase(one.rungs.begin());

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
@@ -56,6 +58,11 @@ std::size_t pieces_of_line(const std::string& svg) {
   return pieces;
 }
 
+std::vector<double> finite(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  return values;
+}
+
 class NoPath {
  public:
   NoPath() : before_(std::getenv("PATH")) { ::setenv("PATH", "", 1); }
@@ -76,19 +83,72 @@ TEST(Figure, WritesDrawingNumbersAndAScriptThatDrawsItAgain) {
   EXPECT_EQ(read_file(path), svg);
 }
 
-TEST(Figure, CsvHoldsEveryNumberWithUnits) {
+TEST(Figure, CsvHoldsEveryNumberWithUnitsAndOfALongSeriesWhatIsDrawnBesides) {
   const TemporaryFolder folder;
   Figure figure = figure_of(line(std::vector<double>(7000, 0.25)));
   figure.panels[0].series.push_back({"model", "", Style::band, palette(0), {1.0, 2.0}, {}, {0.0, 0.1}, {0.2, 0.3}});
   write_figure(folder.path(), figure);
   const Table table = read_csv(folder.path() / "test.csv");
   EXPECT_EQ(table.rows(), 7000U);
-  ASSERT_EQ(table.columns.size(), 5U);
+  EXPECT_EQ(finite(table.at("model.x").values).size(), 7000U);
+  ASSERT_EQ(table.columns.size(), 7U);
   EXPECT_EQ(table.columns[0].header(), "model.x[deg]");
   EXPECT_EQ(table.columns[1].header(), "model.y[-]");
-  EXPECT_EQ(table.columns[3].header(), "model_2.lo[-]");
-  EXPECT_TRUE(std::isnan(table.columns[3].values[2]));
-  EXPECT_NE(read_file(folder.path() / "test.gp").find("every 2 with lines"), std::string::npos);
+  EXPECT_EQ(table.columns[2].header(), "model_drawn.x[deg]");
+  EXPECT_EQ(table.columns[5].header(), "model_2.lo[-]");
+  EXPECT_TRUE(std::isnan(table.columns[5].values[2]));
+  const std::string script = read_file(folder.path() / "test.gp");
+  EXPECT_NE(script.find("using (v(3)):(v(4)) with lines"), std::string::npos) << script;
+  EXPECT_NE(script.find("using (v(5)):(v(6)):(v(7)) with filledcurves"), std::string::npos) << script;
+}
+
+/// 8 Hz recorded at 1000 Hz: every 25th row of it would be a slow wave, or none.
+TEST(Figure, OfALongLineTheExtremesOfEveryStretchAreDrawnAndOneMissingValueBreaksIt) {
+  const TemporaryFolder folder;
+  Series s = line(std::vector<double>(120'000));
+  for (std::size_t k = 0; k < s.x.size(); ++k) {
+    s.x[k] = 0.001 * static_cast<double>(k);
+    s.y[k] = std::sin(2.0 * std::numbers::pi * 8.0 * s.x[k]);
+  }
+  s.y[44'444] = 3.0;
+  s.y[77'777] = nan;
+  write_figure(folder.path(), figure_of(s));
+  const Table table = read_csv(folder.path() / "test.csv");
+  const std::vector<double> x = finite(table.at("model_drawn.x").values), all = table.at("model_drawn.y").values;
+  const std::vector<double> y(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(x.size()));
+  EXPECT_LT(x.size(), 5100U);
+  EXPECT_EQ(std::count_if(y.begin(), y.end(), [](double v) { return std::isnan(v); }), 1);
+  EXPECT_EQ(std::count(y.begin(), y.end(), 3.0), 1);
+  int ups = 0;
+  for (std::size_t k = 1; k < y.size(); ++k) ups += y[k - 1] < 0.0 && y[k] >= 0.0 ? 1 : 0;
+  EXPECT_NEAR(ups, 8 * 120, 3) << "the cycles of the recording";
+  EXPECT_GE(pieces_of_line(read_file(folder.path() / "test.svg")), 2U);
+}
+
+TEST(Figure, OfManyDotsNoneIsDrawnWhereAnotherIsAndTheLonelyOneStays) {
+  const TemporaryFolder folder;
+  Series s = line(std::vector<double>(50'000));
+  s.style = Style::points;
+  for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k] = std::sin(0.7 * static_cast<double>(k * k % 1013));
+  s.y[31'415] = 9.0;
+  write_figure(folder.path(), figure_of(s));
+  const std::vector<double> y = finite(read_csv(folder.path() / "test.csv").at("model_drawn.y").values);
+  EXPECT_LT(y.size(), 3001U);
+  EXPECT_GT(y.size(), 1000U);
+  EXPECT_EQ(std::count(y.begin(), y.end(), 9.0), 1);
+}
+
+TEST(Figure, TimesFarFromZeroAreDrawnToTheDigitsOfTheirSpan) {
+  const TemporaryFolder folder;
+  Series s = line({101325.01, 101325.02, 101325.03, 101325.04});
+  for (std::size_t k = 0; k < s.x.size(); ++k) s.x[k] = 1.7e9 + 0.05 * static_cast<double>(k);
+  const std::string svg = read_file(write_figure(folder.path(), figure_of(s)));
+  const Table table = read_csv(folder.path() / "test.csv");
+  for (std::size_t k = 0; k < s.x.size(); ++k) {
+    EXPECT_NEAR(table.columns[0].values[k], s.x[k], 1e-6);
+    EXPECT_NEAR(table.columns[1].values[k], s.y[k], 1e-6);
+  }
+  for (const char* tic : {">1700000000.05<", ">1700000000.1<", ">101325.015<"}) EXPECT_NE(svg.find(tic), std::string::npos) << tic;
 }
 
 TEST(Figure, AMissingValueBreaksTheLine) {

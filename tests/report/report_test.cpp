@@ -208,6 +208,29 @@ TEST(Report, AnEmptyStudyStillGivesAPage) {
   EXPECT_EQ(page.find("<figure>"), std::string::npos);
 }
 
+TEST(Report, WhatWasDoneToTheRowsOfARecordingIsADataNoteOnce) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  input.experiments.clear();
+  for (Fit& fit : input.fits) fit.facts["data: part_1"] = "3 rows without time dropped; channel y: 2 isolated outliers rejected";
+  const std::string page = read_file(write_report(folder.path(), input));
+  const std::string note = "<li>part_1: 3 rows without time dropped; channel y: 2 isolated outliers rejected</li>";
+  EXPECT_NE(page.find(note), std::string::npos);
+  EXPECT_EQ(page.find(note), page.rfind(note)) << "two methods, one recording";
+  EXPECT_EQ(page.find("No sample was dropped"), std::string::npos);
+}
+
+TEST(Report, CommandsAndNamesOfFilesStandLetterByLetter) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  input.verdict = example_verdict();
+  input.verdict->next = "misfit add study drag --at incidence=alpha_T";
+  input.run.command = "misfit run study.toml --set C_m=2^3";
+  input.run.hashes = {{"alpha_T.csv", "0123456789abcdef"}};
+  expect_parts(read_file(write_report(folder.path(), input)), {"next: misfit add study drag --at incidence=alpha_T</p>",
+                                                               "<td>misfit run study.toml --set C_m=2^3</td>", "<td>alpha_T.csv</td>"});
+}
+
 TEST(Page, ColumnsOfNumbersAreAlignedToTheRight) {
   Page page("title");
   Blocks blocks;

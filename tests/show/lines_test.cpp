@@ -68,5 +68,14 @@ TEST(LineOfARung, GivesItsFirstParametersAndTheForceThatIsLeft) {
   EXPECT_EQ(line_of(rung), "a 1.00 ± 0.10 V, b 2.00 ± 0.10 V, random force 20.0 ± 1.0 V/s");
 }
 
+TEST(LineOfARung, NamesThePortsOfRandomForcesInSeveralUnits) {
+  Rung rung;
+  rung.force = {{"correlation_time", {0.1, 0.01, "s"}},
+                {"dv/dt", {3.0, 0.1, "m/s^2"}},
+                {"du/dt", {3.0, 0.1, "m/s^2"}},
+                {"dw/dt", {20.0, 1.0, "V/s"}}};
+  EXPECT_EQ(line_of(rung), "random force 3.00 ± 0.10 m/s^2 on du/dt, 20.0 ± 1.0 V/s on dw/dt");
+}
+
 }  // namespace
 }  // namespace misfit

@@ -66,6 +66,37 @@ TEST(ShownUncertainty, HasTheBandOfThreeSigmasAndFourNumbersPerTableOfShares) {
   EXPECT_NE(text.find("share of the variance"), text.rfind("share of the variance"));
 }
 
+TEST(ShownFit, TheRangeOfACurveOfASmallQuantityIsNotZeroAndOfOneNeverVisitedIsMissing) {
+  Fit fit;
+  fit.method = "equation_error";
+  fit.curves.resize(2);
+  fit.curves[0].name = "k", fit.curves[1].name = "never";
+  for (CurveEstimate& curve : fit.curves) curve.informative = true, curve.of = "gap", curve.of_unit = "m", curve.x = {0.0002, 0.0151};
+  fit.curves[0].count = {9.0, 9.0};
+  fit.curves[1].count = {0.0, 0.0};
+  const std::string text = as_text(blocks_of(std::vector{fit}));
+  expect_parts(text, {"from 0.0002 to 0.0151 m of gap", "curve never  –"});
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+}
+
+TEST(ShownDiagnosis, ASlowSpectralLineHasAFrequency) {
+  Diagnosis d;
+  d.whiteness.resize(1);
+  d.whiteness[0].peak_frequency = 1.157e-5;
+  expect_parts(as_text(blocks_of(d)), {"1.157e-05 Hz"});
+}
+
+TEST(ShownRung, RandomForcesOfDifferentUnitsHaveARowEach) {
+  Rung before, after;
+  before.force = {{"du/dt", {3.0, 0.1, "m/s^2"}}, {"dw/dt", {20.0, 1.0, "V/s"}}};
+  after = before;
+  after.id = 1;
+  after.parent = 0;
+  after.force["dw/dt"].value = 5.0;
+  const std::string text = as_text(rung_blocks({{before, after}}, after));
+  expect_parts(text, {"random force on du/dt", "within its sigma", "random force on dw/dt", "-75.0 %"});
+}
+
 TEST(ShownFit, ASmoothedCurveHasItsEffectiveDegreesOfFreedomBesideItsRange) {
   Fit fit;
   fit.method = "equation_error";
@@ -75,7 +106,7 @@ TEST(ShownFit, ASmoothedCurveHasItsEffectiveDegreesOfFreedomBesideItsRange) {
     curve.informative = true, curve.of = "alpha_T", curve.of_unit = "rad", curve.x = {0.1}, curve.count = {9.0};
   fit.facts[freedom_fact("C_m")] = "4.2";
   const std::string text = as_text(blocks_of(std::vector{fit}));
-  expect_parts(text, {"from 5.7 to 5.7 deg of alpha_T; 4.2 effective degrees of freedom", "curve C_mq"});
+  expect_parts(text, {"from 5.73 to 5.73 deg of alpha_T; 4.2 effective degrees of freedom", "curve C_mq"});
   EXPECT_EQ(text.find("effective degrees"), text.rfind("effective degrees"));
 }
 

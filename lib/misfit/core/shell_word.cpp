@@ -16,4 +16,8 @@ std::string shell_word(const std::string& text) {
   return out + "'";
 }
 
+std::string misfit_command(const std::string& verb, const std::string& study, const std::string& words, const std::string& out) {
+  return "misfit " + verb + " " + shell_word(study) + (words.empty() ? "" : " " + words) + (out.empty() ? "" : " --out " + shell_word(out));
+}
+
 }  // namespace misfit

@@ -19,7 +19,7 @@ bool within_sigma(const Estimate& before, const Estimate& after) {
 
 std::string ErrorChange::what() const {
   const std::string name = enum_name(error_kind_names, kind);
-  return of.empty() ? name : name + " of " + of;
+  return of.empty() ? name : name + (kind == ErrorKind::random_force ? " on " : " of ") + of;
 }
 
 template <class Archive>

@@ -36,7 +36,7 @@ inline constexpr std::array<const char*, 3> error_kind_names = {"RMS error", "ra
 /// An error of the model before and after an effect is in it.
 struct ErrorChange {
   ErrorKind kind = ErrorKind::rms_error;
-  std::string of;                 ///< "P_y, 32 samples ahead"; empty: of the model as a whole
+  std::string of;                 ///< "P_y, 32 samples ahead", a random force's port; empty: of the model as a whole
   Estimate before;                ///< SI
   std::optional<Estimate> after;  ///< missing: no effect was added
   std::string remark;             ///< in words: "1.1 % of the motion"

@@ -53,8 +53,10 @@ void use_plain_units(Exported& exported);
 [[nodiscard]] std::string json_text(const Exported& exported);
 /// The same as tables, by file name: parameters.csv, covariance.csv, CURVE_knots.csv, CURVE_grid.csv.
 [[nodiscard]] std::map<std::string, std::string> csv_texts(const Exported& exported);
-/// The static and the damping curve as JSBSim's <aerodynamics>. InputError where the model has neither.
+/// Static moment and damping, curves or numbers, as JSBSim's <aerodynamics>. InputError where the model has neither.
 [[nodiscard]] std::string jsbsim_text(const Exported& exported);
+/// The effects of the model that it does not have.
+[[nodiscard]] std::vector<std::string> effects_not_in_jsbsim(const Exported& exported);
 
 /// Letters, digits and underscores of a text, not beginning with a digit: a name in C and Python, of the reserved words of neither.
 [[nodiscard]] std::string identifier(const std::string& text);

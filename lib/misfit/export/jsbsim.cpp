@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "misfit/core/error.h"
+#include "misfit/core/text.h"
 #include "misfit/export/exported.h"
 #include "misfit/export/expression.h"
 
@@ -76,15 +78,21 @@ Points points_of(const ExportedCurve& curve, const Exported& exported) {
   return both;
 }
 
-std::string function_text(const Term& term, const Points& points) {
+std::string table_text(const Points& points) {
+  std::string out =
+      "          <table>\n            <independentVar lookup=\"row\">aero/alpha-rad</independentVar>\n            <tableData>\n";
+  for (std::size_t i = 0; i < points.x.size(); ++i) out += fmt::format("              {:.17g} {:.17g}\n", points.x[i], points.value[i]);
+  return out + "            </tableData>\n          </table>\n";
+}
+
+/// `coefficient`: a table over the angle, or a value.
+std::string function_text(const Term& term, const std::string& coefficient) {
   std::string out =
       fmt::format("      <function name=\"{}\">\n        <description>{}</description>\n        <product>\n", term.function, term.doc);
   std::vector<const char*> factors = {"aero/qbar-psf", "metrics/Sw-sqft", "metrics/cbarw-ft"};
   if (term.rate != nullptr) factors.insert(factors.end(), {"aero/ci2vel", term.rate});
   for (const char* property : factors) out += fmt::format("          <property>{}</property>\n", property);
-  out += "          <table>\n            <independentVar lookup=\"row\">aero/alpha-rad</independentVar>\n            <tableData>\n";
-  for (std::size_t i = 0; i < points.x.size(); ++i) out += fmt::format("              {:.17g} {:.17g}\n", points.x[i], points.value[i]);
-  return out + "            </tableData>\n          </table>\n        </product>\n      </function>\n";
+  return out + coefficient + "        </product>\n      </function>\n";
 }
 
 /// Of JSBSim's <metrics>, as the estimate assumes them.
@@ -101,24 +109,56 @@ std::string metrics_words(const Exported& exported) {
   return out;
 }
 
-}  // namespace
-
-std::string jsbsim_text(const Exported& exported) {
-  std::string functions;
+/// The functions of the file, by the names of the coefficients that they write.
+std::map<std::string, std::string> functions_of(const Exported& exported) {
+  std::map<std::string, std::string> out;
+  const auto term_of = [](const std::string& name) {
+    return std::find_if(terms.begin(), terms.end(), [&](const Term& t) { return name == t.curve; });
+  };
   for (const ExportedCurve& curve : curves_of(exported)) {
-    const auto term = std::find_if(terms.begin(), terms.end(), [&](const Term& t) { return curve.name == t.curve; });
+    const auto term = term_of(curve.name);
     if (term == terms.end() || curve.of_unit != "rad") continue;
     if (!curve.has_knots() && exported.model) continue;  // derived: it is in the others already
     if (curve.grid && !curve.grid->informative) continue;
-    functions += function_text(*term, points_of(curve, exported));
+    out[curve.name] = function_text(*term, table_text(points_of(curve, exported)));
   }
+  for (const ExportedParameter& p : exported.model ? parameters_of(exported) : std::vector<ExportedParameter>{}) {
+    const auto term = term_of(p.name);
+    if (term == terms.end() || p.estimate.unit != "-") continue;
+    out[p.name] = function_text(*term, fmt::format("          <value>{:.17g}</value>\n", p.estimate.value));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> effects_not_in_jsbsim(const Exported& exported) {
+  std::vector<std::string> out;
+  if (!exported.model) return out;
+  const Model& model = *exported.model;
+  const auto functions = functions_of(exported);
+  const auto is_written = [&](const BoundCoefficient& c) {
+    return (c.curve >= 0 && functions.contains(model.curves[c.curve].name)) ||
+           (c.parameter >= 0 && functions.contains(model.parameters[c.parameter].name));
+  };
+  for (const BoundEffect& bound : model.effects) {
+    if (std::none_of(bound.coefficients.begin(), bound.coefficients.end(), is_written)) out.push_back(bound.name);
+  }
+  return out;
+}
+
+std::string jsbsim_text(const Exported& exported) {
+  std::string functions;
+  for (const auto& [name, text] : functions_of(exported)) functions += text;
   if (functions.empty()) {
     throw InputError(
-        "the model has no curve of a pitching moment (C_m, C_mq, C_m_alphadot of an angle) to write for JSBSim; "
+        "the model has no coefficient of a pitching moment (C_m, C_mq, C_m_alphadot of an angle) to write for JSBSim; "
         "--to json, csv, c and python write all curves");
   }
   std::string head;
   for (const std::string& line : provenance(exported)) head += "  " + line + "\n";
+  const std::vector<std::string> others = effects_not_in_jsbsim(exported);
+  if (!others.empty()) head += "  Effects of the model that are not in this file: " + join_words(others) + "\n";
   return "<?xml version=\"1.0\"?>\n<!--\n" + comment_text(head + metrics_words(exported)) +
          "  alpha_T stands for aero/alpha-rad [rad]; a moment in pounds times feet, positive increases it. Outside of the table JSBSim "
          "holds "

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
+#include "misfit/core/unique_name.h"
 #include "misfit/export/source.h"
 
 namespace misfit {
@@ -155,10 +157,32 @@ std::string parameters_text(const SourceParts& parts) {
   return out + "}\n";
 }
 
-std::string names_text(const char* list, const auto& items) {
+std::string names_text(const char* list, const std::vector<std::string>& names) {
   std::string out;
-  for (const auto& item : items) out += quoted(item.name) + ", ";
-  return fmt::format("{} = [{}]\n", list, out.substr(0, out.size() - std::min<std::size_t>(2, out.size())));
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + quoted(name);
+  return fmt::format("{} = [{}]\n", list, out);
+}
+
+std::vector<std::string> names_of(const auto& items) {
+  std::vector<std::string> out;
+  for (const auto& item : items) out.emplace_back(item.name);
+  return out;
+}
+
+/// All that x has: memory of effects behind the states of the system.
+std::vector<std::string> state_names(const Model& model) {
+  std::vector<std::string> out = names_of(model.system->spec().states);
+  out.insert(out.end(), model.own_state_names.begin(), model.own_state_names.end());
+  return out;
+}
+
+/// All that u has: what inputs were earlier, as u_late, behind the inputs of the system.
+std::vector<std::string> input_names(const SourceParts& parts, const Model& model) {
+  std::vector<std::string> out = names_of(model.system->spec().inputs);
+  const std::vector<std::string> own = out;
+  std::set<std::string> taken(own.begin(), own.end());
+  for (const LateInputUse& late : parts.formulas.late) out.push_back(unique_name(own[late.input] + "_late", taken));
+  return out;
 }
 
 std::string right_hand_side(const SourceParts& parts, const Model& model) {
@@ -172,8 +196,8 @@ std::string right_hand_side(const SourceParts& parts, const Model& model) {
                        statements(parts.formulas, roots, targets, names, python_language), result);
   };
   const SystemSpec& spec = model.system->spec();
-  std::string out = "\n\n" + comment(signature_lines(parts, model)) + names_text("states", spec.states) +
-                    names_text("inputs", spec.inputs) + names_text("output_names", spec.outputs);
+  std::string out = "\n\n" + comment(signature_lines(parts, model)) + names_text("states", state_names(model)) +
+                    names_text("inputs", input_names(parts, model)) + names_text("output_names", names_of(spec.outputs));
   out += function("rates", "dx", parts.formulas.rates) + function("outputs", "y", parts.formulas.outputs);
   for (const auto& [name, node] : parts.formulas.sample_times)
     out += "\n\ndef " + name + "(x, u, t):\n" + statements(parts.formulas, {node}, {"shift"}, names, python_language) + "  return shift\n";

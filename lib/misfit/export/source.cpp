@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -26,6 +27,22 @@ std::string bounds_of(const StateSpec& state) {
   std::string out;
   if (std::isfinite(state.lower)) out += fmt::format("; set back to {} after each step", number_text(state.lower));
   if (std::isfinite(state.upper)) out += fmt::format("; at most {}", number_text(state.upper));
+  return out;
+}
+
+/// To which time each output belongs, where it is not t.
+std::vector<std::string> sample_time_lines(const SourceParts& parts, const SystemSpec& spec) {
+  const auto shifted = [&](const std::string& by) {
+    const auto& all = parts.formulas.sample_times;
+    return std::any_of(all.begin(), all.end(), [&](const auto& time) { return time.first == by; });
+  };
+  std::vector<std::string> out;
+  const std::string common = shifted(all_sample_times) ? std::string("t + ") + all_sample_times : "t";
+  for (int i = 0; i < int_size(spec.outputs); ++i) {
+    const std::string own = sample_time_of(spec.outputs[i].name);
+    if (shifted(own) || shifted(all_sample_times))
+      out.push_back(fmt::format("y[{}] belongs to the time {}{}.", i, common, shifted(own) ? " + " + own : ""));
+  }
   return out;
 }
 
@@ -78,9 +95,8 @@ std::vector<std::string> signature_lines(const SourceParts& parts, const Model& 
     out.push_back(fmt::format("y[{}]  {}", i, in_unit(spec.outputs[i].name, spec.outputs[i].unit)));
   out.emplace_back("t     time of the recording [s]");
   out.push_back(fmt::format("Without noise, and without the random force that {} estimates.", random_force_estimator().name));
-  for (const auto& [name, node] : parts.formulas.sample_times)
-    out.push_back((name == all_sample_times ? "The outputs belong" : "That output belongs") + std::string(" to the time t + ") + name +
-                  ".");
+  const std::vector<std::string> times = sample_time_lines(parts, spec);
+  out.insert(out.end(), times.begin(), times.end());
   return out;
 }
 

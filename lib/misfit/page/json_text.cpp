@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "misfit/core/enum_name.h"
+#include "misfit/report/extent.h"
 #include "misfit/report/symbols.h"
 
 namespace misfit::page {
@@ -85,7 +86,8 @@ struct BlockWriter {
     return fmt::format(R"({{"kind":"heading","text":{},"level":{}}})", json_words(b.text), b.level);
   }
   std::string operator()(const Paragraph& b) const {
-    return fmt::format(R"({{"kind":"paragraph","text":{},"tone":{}}})", json_words(b.text), tone(b.tone));
+    const std::string text = b.tone == Tone::command ? json_string(b.text) : json_words(b.text);
+    return fmt::format(R"({{"kind":"paragraph","text":{},"tone":{}}})", text, tone(b.tone));
   }
   std::string operator()(const List& b) const {
     return fmt::format(R"({{"kind":"list","items":{},"tone":{}}})", words(b.items), tone(b.tone));
@@ -131,6 +133,8 @@ std::string json_words(const std::string& text) {
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
 std::string json_numbers(const std::vector<double>& values, int digits) {
+  constexpr int all = 17;
+  digits = std::min(digits + report::digits_before_span(report::extent_of(values)), all);
   fmt::memory_buffer out;
   out.push_back('[');
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -15,7 +15,7 @@ namespace misfit::page {
 /// Text for readers, typeset as in the report (report/symbols.h): "plain", or [["α", 0], ["T", -1]] (−1: below the line, 1: above it).
 [[nodiscard]] std::string json_words(const std::string& text);
 [[nodiscard]] std::string json_number(double value);
-/// To `digits` significant digits.
+/// To `digits` significant digits, and as many more as the values have in common (1.7e9 s and what follows).
 [[nodiscard]] std::string json_numbers(const std::vector<double>& values, int digits = 6);
 /// Values along an axis, such as times: to a 1e-9th of what they span, however far they are from zero (UNIX seconds).
 [[nodiscard]] std::string json_places(const std::vector<double>& x);

@@ -1,7 +1,11 @@
 #include "misfit/report/figure.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <set>
 
@@ -9,6 +13,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/table.h"
 #include "misfit/core/unique_name.h"
+#include "misfit/report/extent.h"
 #include "misfit/report/gnuplot_run.h"
 #include "misfit/report/gnuplot_script.h"
 #include "misfit/report/gnuplot_series.h"
@@ -18,16 +23,19 @@ namespace {
 
 constexpr const char* name_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
 
-std::vector<double> padded(std::vector<double> values, std::size_t rows) {
-  values.resize(rows, std::numeric_limits<double>::quiet_NaN());
+/// To a ten-millionth of what they span, a thousand times finer than is seen; of what spans nothing, as it is.
+std::vector<double> as_drawn(std::vector<double> values) {
+  constexpr int of_span = 7, all = 17;
+  const auto range = extent_of(values);
+  const int digits = range[1] > range[0] ? std::min(of_span + digits_before_span(range), all) : all;
+  if (digits == all) return values;
+  for (double& value : values) value = std::isfinite(value) ? std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr) : value;
   return values;
 }
 
-/// Does this column run along x, and so have the unit of x?
-bool along_x(Style style, const std::string& column) {
-  if (column == "x") return true;
-  if (style == Style::x_bars || style == Style::boxes) return column != "y";
-  return style == Style::cells && column == "lo";
+std::vector<double> padded(std::vector<double> values, std::size_t rows) {
+  values.resize(rows, std::numeric_limits<double>::quiet_NaN());
+  return values;
 }
 
 const std::string& unit_of(const Figure& figure, const Panel& panel, Style style, const std::string& column) {
@@ -59,9 +67,12 @@ Table numbers_of(const Figure& figure) {
   for (const Panel& panel : figure.panels) {
     for (const Series& s : panel.series) {
       const std::string key = unique_name(s.key.empty() ? "series" : s.key, used);
-      for (const auto& [column, values] : columns_of(s)) {
-        table.add(key + "." + column, unit_of(figure, panel, s.style, column), padded(*values, rows));
-      }
+      const auto add = [&](const std::string& name, const Series& part) {
+        for (const auto& [column, values] : columns_of(part))
+          table.add(name + "." + column, unit_of(figure, panel, s.style, column), padded(as_drawn(*values), rows));
+      };
+      add(key, s);
+      if (is_thinned(s)) add(unique_name(key + "_drawn", used), drawn_part(figure, panel, s));
     }
   }
   if (table.columns.empty()) table.add("no_data", "", padded({}, rows));
@@ -83,8 +94,7 @@ void make_names_unique(std::vector<Figure>& figures) {
 std::filesystem::path write_figure(const std::filesystem::path& dir, const Figure& figure) {
   check(figure);
   make_writable_folder(dir);
-  constexpr int digits = 7;
-  write_csv(dir / (figure.name + ".csv"), numbers_of(figure), digits);
+  write_csv(dir / (figure.name + ".csv"), numbers_of(figure));
   write_atomically(dir / (figure.name + ".gp"), gnuplot_script(figure));
   run_gnuplot(dir, figure.name);
   return dir / (figure.name + ".svg");

@@ -83,7 +83,8 @@ inline constexpr const char* black = "#000000";
 /// Figures whose name another one before them has get ".2", ".3", … behind it: no figure's files may be written over by the next.
 void make_names_unique(std::vector<Figure>& figures);
 
-/// Writes DIR/NAME.csv (every number drawn, columns SERIES.x[unit], SERIES.y[unit], …, shorter series padded with empty fields),
+/// Writes DIR/NAME.csv (every number, columns SERIES.x[unit], SERIES.y[unit], …, shorter series padded with empty fields; of a series too
+/// long to be drawn whole, what is drawn of it in columns SERIES_drawn.x[unit], …),
 /// DIR/NAME.gp (a stand-alone gnuplot script that draws NAME.svg from NAME.csv when run in that folder) and DIR/NAME.svg, drawn by that
 /// script. A panel without a finite number says "no data"; so does the legend of a series without one. RunError: gnuplot is not installed
 /// or fails (its words are given), the folder cannot be written. InputError: series with vectors of unequal length, a name that is no file

@@ -7,6 +7,7 @@
 
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures_discovery.h"
+#include "misfit/show/rows.h"
 
 namespace misfit::report {
 namespace {
@@ -19,12 +20,14 @@ std::string added_to(const Rung& rung) {
   return "+ " + (rung.added.starts_with(system) ? rung.added.substr(std::string(system).size()) : rung.added);
 }
 
-/// The common strength of the random force; nullptr if the method has none.
-const Estimate* strength(const Rung& rung) {
-  for (const auto& [port, e] : rung.force) {
-    if (e.unit != "s") return &e;
+/// What the strengths of the random force are called, by their units: with a port, of the first rung that has one, where they are several.
+std::map<std::string, std::string> force_names(const Ladder& ladder) {
+  std::map<std::string, std::string> out;
+  for (const Rung& rung : ladder.rungs) {
+    for (const ForceStrength& f : force_strengths(rung.force)) out.emplace(f.strength.unit, "random force on " + f.port);
   }
-  return nullptr;
+  if (out.size() == 1) out.begin()->second = "random force";
+  return out;
 }
 
 void add_point(Series& series, double x, double value, double half) {
@@ -69,14 +72,14 @@ Series& series_for(Panel& panel, const SeriesLook& look) {
   return panel.series.back();
 }
 
-void add_force(const Rung& rung, std::vector<Panel>& panels) {
-  const Estimate* e = strength(rung);
-  if (e == nullptr) return;
-  const std::string unit = display_unit(e->unit);
-  const double factor = convert(1.0, e->unit, unit);
-  Series& series =
-      series_for(panel_for(panels, "random force", unit), {"force", "remaining random force, ± 1 sigma", Style::error_bars, palette(1)});
-  add_point(series, rung.id, e->value * factor, e->sigma * factor);
+void add_force(const Rung& rung, const std::map<std::string, std::string>& names, std::vector<Panel>& panels) {
+  for (const auto& [port, e] : force_strengths(rung.force)) {
+    const std::string unit = display_unit(e.unit), name = names.at(e.unit);
+    const double factor = convert(1.0, e.unit, unit);
+    const std::string key = names.size() == 1 ? "force" : as_key(name);
+    Series& series = series_for(panel_for(panels, name, unit), {key, "remaining " + name + ", ± 1 sigma", Style::error_bars, palette(1)});
+    add_point(series, rung.id, e.value * factor, e.sigma * factor);
+  }
 }
 
 /// Predicted and actual drop side by side.
@@ -213,6 +216,7 @@ Figure ladder_figure(const Ladder& ladder) {
       "points need not begin at 0; they are at least a tenth of the value high.";
   figure.x_label = "model";
   std::vector<Panel> drop, force, near, far, trim;
+  const auto names = force_names(ladder);
   Errors errors;
   errors.relative = channels_change(ladder);
   if (errors.relative)
@@ -221,7 +225,7 @@ Figure ladder_figure(const Ladder& ladder) {
   for (const Rung& rung : ladder.rungs) {
     figure.x_marks.push_back({static_cast<double>(rung.id), added_to(rung)});
     add_drop(rung, drop);
-    add_force(rung, force);
+    add_force(rung, names, force);
     add_errors(rung, near, far, errors);
     add_trim(rung, trim);
   }

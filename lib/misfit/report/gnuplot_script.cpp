@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/report/extent.h"
 #include "misfit/report/gnuplot_series.h"
 #include "misfit/report/symbols.h"
 
@@ -48,21 +49,6 @@ std::size_t letters(const std::string& text) {
   return count;
 }
 
-Margins margins_of(const Figure& figure) {
-  constexpr double letter = 7.2;
-  Margins m{left, right, bottom, false};
-  for (const Panel& panel : figure.panels) {
-    for (const Mark& mark : panel.y_marks) m.left = std::max(m.left, 30.0 + letter * static_cast<double>(letters(mark.text)));
-    for (const Series& s : panel.series) m.right = s.style == Style::cells ? colour_bar : m.right;
-  }
-  std::size_t longest = 0;
-  for (const Mark& mark : figure.x_marks) longest = std::max(longest, letters(mark.text));
-  const double room = (full_width - m.left - m.right) / static_cast<double>(std::max<std::size_t>(figure.x_marks.size(), 1));
-  m.slanted = letter * static_cast<double>(longest) > room;
-  if (m.slanted) m.bottom += 0.35 * letter * static_cast<double>(longest);
-  return m;
-}
-
 Place place_panel(const Panel& panel, double top, double width) {
   std::size_t entries = 0;
   std::size_t longest = 0;
@@ -93,6 +79,60 @@ Range finite_range(const std::vector<const std::vector<double>*>& columns) {
   if (range[0] > range[1]) return {0.0, 1.0};
   if (range[0] == range[1]) return {range[0] - 0.5, range[1] + 0.5};
   return range;
+}
+
+/// What is drawn along y.
+Range y_extent_of(const Panel& panel) {
+  if (panel.y_range) return *panel.y_range;
+  std::vector<const std::vector<double>*> columns;
+  for (const Series& s : panel.series) {
+    for (const auto& [name, values] : columns_of(s)) {
+      if (!along_x(s.style, name) && values != &s.z) columns.push_back(values);
+    }
+  }
+  return finite_range(columns);
+}
+
+/// Digits of the numbers beside an axis that tell neighbours apart, where the six of gnuplot's own formats are too few; else 0.
+int digits_of_tics(const Range& range) {
+  constexpr int between_tics = 2, usual = 6, all = 15;
+  const int digits = digits_before_span(range) + between_tics;
+  if (digits <= usual) return 0;
+  const int whole = static_cast<int>(std::ceil(std::log10(std::max(std::abs(range[0]), std::abs(range[1])))));
+  return std::min(std::max(digits, whole), all);
+}
+
+std::string tics_format(const Range& range, const std::string& usual) {
+  const int digits = digits_of_tics(range);
+  return digits > 0 ? fmt::format("%.{}g", digits) : usual;
+}
+
+/// As many marks on the x axis as long numbers find room; empty: gnuplot's own choice.
+std::string x_tics_text(const Range& range, double width) {
+  const int digits = digits_of_tics(range);
+  if (digits == 0) return "";
+  constexpr double letter = 8.0, between = 3.0;
+  const double least = (range[1] - range[0]) * letter * (digits + between) / width, decade = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10.0 * decade;
+  for (const double part : {5.0, 2.0}) step = part * decade >= least ? part * decade : step;
+  return fmt::format("set xtics {:.15g}\n", step);
+}
+
+Margins margins_of(const Figure& figure) {
+  constexpr double letter = 7.2;
+  Margins m{left, right, bottom, false};
+  for (const Panel& panel : figure.panels) {
+    for (const Mark& mark : panel.y_marks) m.left = std::max(m.left, 30.0 + letter * static_cast<double>(letters(mark.text)));
+    const int digits = panel.y_marks.empty() ? digits_of_tics(y_extent_of(panel)) : 0;
+    if (digits > 0) m.left = std::max(m.left, 60.0 + letter * digits);
+    for (const Series& s : panel.series) m.right = s.style == Style::cells ? colour_bar : m.right;
+  }
+  std::size_t longest = 0;
+  for (const Mark& mark : figure.x_marks) longest = std::max(longest, letters(mark.text));
+  const double room = (full_width - m.left - m.right) / static_cast<double>(std::max<std::size_t>(figure.x_marks.size(), 1));
+  m.slanted = letter * static_cast<double>(longest) > room;
+  if (m.slanted) m.bottom += 0.35 * letter * static_cast<double>(longest);
+  return m;
 }
 
 /// Both edges of cells about `middle`.
@@ -143,7 +183,7 @@ std::string plot_command(const Figure& figure, const Panel& panel, std::size_t& 
     const std::string text = plot_clause(figure, s, column);
     if (!text.empty()) clauses.push_back(text);
     any = any || has_data(s);
-    column += columns_of(s).size();
+    column += columns_written(s);
   }
   if (!any) {
     clauses.insert(clauses.begin(), "NaN notitle");
@@ -154,7 +194,7 @@ std::string plot_command(const Figure& figure, const Panel& panel, std::size_t& 
 }
 
 std::string range_text(const std::optional<Range>& range) {
-  return range ? fmt::format("[{:.9g}:{:.9g}]", (*range)[0], (*range)[1]) : "[*:*]";
+  return range ? fmt::format("[{:.17g}:{:.17g}]", (*range)[0], (*range)[1]) : "[*:*]";
 }
 
 std::string head(const Figure& figure, double width, double height) {
@@ -244,13 +284,16 @@ std::string panel_text(const Figure& figure, std::size_t k, const Place& place, 
                              : !panel.y_marks.empty() ? marks_text(panel.y_marks)
                              : panel.y_step > 0.0     ? fmt::format("{}", panel.y_step)
                                                       : "autofreq";
-  text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\n", axis_text(panel.y_label, panel.y_unit), y_tics);
+  text += fmt::format("set ylabel '{}' offset 0.5,0\nset ytics {}\nset format y '{}'\n", axis_text(panel.y_label, panel.y_unit), y_tics,
+                      tics_format(y_extent_of(panel), "% h"));
   text += colours_text(figure, panel);
+  if (figure.x_marks.empty() && !has_columns(figure)) text += x_tics_text(x_range_of(figure), width - m.left - m.right);
   if (!lowest)
     return text + "unset xlabel\nset format x ''\n" +
            (figure.x_marks.empty() ? "" : "set xtics " + marks_text(blank(figure.x_marks)) + "\n");
   if (panel.beside) return text + fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(panel.beside->label, ""));
-  text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(figure.x_label, figure.x_unit));
+  text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '{}'\n", axis_text(figure.x_label, figure.x_unit),
+                      tics_format(x_range_of(figure), "%g"));
   if (figure.x_marks.empty()) return text;
   return text + fmt::format("set xtics {} {}\n", m.slanted ? "rotate by -20 left" : "norotate center", marks_text(figure.x_marks));
 }

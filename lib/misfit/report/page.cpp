@@ -94,13 +94,15 @@ std::vector<bool> number_columns(const TableBlock& table) {
   return out;
 }
 
-std::string table_row(const std::vector<std::string>& cells, const std::vector<bool>& numbers, bool head) {
+std::string in_html(const std::string& text, Texts texts) { return texts == Texts::as_written ? escape_html(text) : html_text(text); }
+
+std::string table_row(const std::vector<std::string>& cells, const std::vector<bool>& numbers, bool head, Texts texts) {
   std::string html = "<tr>";
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const bool number = k < numbers.size() && numbers[k];
     const char* css = number ? " class=\"number\"" : "";
-    html += head ? fmt::format("<th scope=\"col\"{}>{}</th>", css, html_text(cells[k]))
-                 : fmt::format("<td{}>{}</td>", css, html_text(cells[k]));
+    html += head ? fmt::format("<th scope=\"col\"{}>{}</th>", css, in_html(cells[k], texts))
+                 : fmt::format("<td{}>{}</td>", css, in_html(cells[k], texts));
   }
   return html + "</tr>\n";
 }
@@ -136,7 +138,7 @@ void Page::show(const Blocks& blocks, const std::function<void(const std::string
     if (const auto* heading = std::get_if<Heading>(&block)) {
       heading->level == 1 ? section(heading->text + note) : subsection(heading->text);
     } else if (const auto* text = std::get_if<Paragraph>(&block)) {
-      paragraph(text->text, css_of(text->tone));
+      paragraph(*text);
     } else if (const auto* items = std::get_if<List>(&block)) {
       list(*items);
     } else if (const auto* rows = std::get_if<TableBlock>(&block)) {
@@ -170,8 +172,10 @@ void Page::choice(const std::string& group, const std::string& summary, bool ope
 
 void Page::subsection(const std::string& heading) { body_ += "<h3>" + html_text(heading) + "</h3>\n"; }
 
-void Page::paragraph(const std::string& text, const std::string& css_class) {
-  body_ += fmt::format("<p{}>{}</p>\n", css_class.empty() ? "" : " class=\"" + css_class + "\"", html_text(text));
+void Page::paragraph(const Paragraph& paragraph) {
+  const std::string css_class = css_of(paragraph.tone);
+  body_ += fmt::format("<p{}>{}</p>\n", css_class.empty() ? "" : " class=\"" + css_class + "\"",
+                       in_html(paragraph.text, paragraph.tone == Tone::command ? Texts::as_written : Texts::typeset));
 }
 
 void Page::list(const List& list) {
@@ -180,12 +184,13 @@ void Page::list(const List& list) {
   body_ += "</ul>\n";
 }
 
-void Page::table(const TableBlock& table) {
+void Page::table(const TableBlock& table, Texts texts) {
+  if (table.rows.empty()) return;
   std::vector<std::string> header;
   for (const TableColumn& column : table.columns) header.push_back(column.heading);
   const std::vector<bool> numbers = number_columns(table);
-  body_ += "<div class=\"wide\" tabindex=\"0\"><table><thead>" + table_row(header, numbers, true) + "</thead><tbody>\n";
-  for (const auto& row : table.rows) body_ += table_row(row, numbers, false);
+  body_ += "<div class=\"wide\" tabindex=\"0\"><table><thead>" + table_row(header, numbers, true, texts) + "</thead><tbody>\n";
+  for (const auto& row : table.rows) body_ += table_row(row, numbers, false, texts);
   body_ += "</tbody></table></div>\n";
 }
 

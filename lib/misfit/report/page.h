@@ -11,6 +11,9 @@
 
 namespace misfit::report {
 
+/// How a text stands on a page: with its symbols typeset (symbols.h), or letter by letter, for what a reader copies or looks up.
+enum class Texts { typeset, as_written };
+
 /// An HTML page under construction. Every text given to it is plain and is escaped here; only `html` takes markup.
 class Page {
  public:
@@ -31,7 +34,8 @@ class Page {
   void show(const Blocks& blocks, const std::function<void(const std::string& place)>& figures = {}, const std::string& note = "");
   void section(const std::string& heading);
   void subsection(const std::string& heading);
-  void paragraph(const std::string& text, const std::string& css_class = "");
+  void paragraph(const Paragraph& paragraph);  ///< a command as it is written
+  void table(const TableBlock& table, Texts texts = Texts::typeset);
   void figure(const Figure& figure, const std::string& svg);  ///< drawing, caption, notes
   /// A name for the next figure: `name`, or if a figure of the page has it one with a number behind.
   [[nodiscard]] std::string free_figure_name(const std::string& name) { return unique_name(name, figure_names_, "."); }
@@ -42,7 +46,6 @@ class Page {
 
  private:
   void list(const List& list);
-  void table(const TableBlock& table);
 
   void end_section();
 

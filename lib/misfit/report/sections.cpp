@@ -17,6 +17,7 @@ namespace misfit::report {
 namespace {
 
 constexpr double zoom_seconds = 5.0;
+constexpr std::string_view of_data = "data: ";  // begins the name of a fact of a fit (Fit::facts) that says what was done to an experiment
 
 }  // namespace
 
@@ -116,11 +117,19 @@ void simulated_section(const ReportInput& input, Page& page, const Draw& draw) {
 void notes_section(const ReportInput& input, Page& page) {
   std::vector<std::string> notes;
   const auto add = [&](const std::string& from, const std::vector<std::string>& words) {
-    for (const std::string& note : words) notes.push_back(from.empty() ? note : from + ": " + note);
+    for (const std::string& note : words) {
+      const std::string line = from.empty() ? note : from + ": " + note;
+      if (std::find(notes.begin(), notes.end(), line) == notes.end()) notes.push_back(line);
+    }
   };
   for (const ExperimentInput& experiment : input.experiments) {
     if (experiment.track) add(experiment.name, experiment.track->notes);
     if (experiment.attitude) add(experiment.name, experiment.attitude->notes);
+  }
+  for (const Fit& fit : input.fits) {
+    for (const auto& [name, words] : fit.facts) {
+      if (name.starts_with(of_data)) add(name.substr(of_data.size()), {words});
+    }
   }
   if (input.calibration) add("calibration", input.calibration->notes);
   for (const Reference& reference : input.references) add("", reference.notes);
@@ -149,12 +158,8 @@ void provenance_section(const ReportInput& input, Page& page) {
   for (const auto& [file, hash] : run.hashes) files.rows.push_back({file, hash});
   TableBlock stages{columns("stage|>time [s]")};
   for (const auto& [stage, seconds] : run.stages) stages.rows.push_back({stage, fmt::format("{:.2f}", seconds)});
-  Blocks out;
-  out.heading("Provenance");
-  out.table(std::move(facts));
-  out.table(std::move(files));
-  out.table(std::move(stages));
-  page.show(out);
+  page.section("Provenance");
+  for (const TableBlock& table : {facts, files, stages}) page.table(table, Texts::as_written);
 }
 
 }  // namespace misfit::report

@@ -41,21 +41,15 @@ TableBlock whiteness_table(const Diagnosis& d) {
   TableBlock table{columns("innovations of|>Ljung-Box p|>lags|>periodogram p|largest spectral line|>p of the line")};
   for (const WhitenessReport& w : d.whiteness) {
     table.rows.push_back({w.experiment + " " + w.channel, format_probability(w.ljung_box_p), std::to_string(w.lags),
-                          format_probability(w.periodogram_p), fmt::format("{:.3f} Hz, {:.1f} times white", w.peak_frequency, w.peak_power),
+                          format_probability(w.periodogram_p), fmt::format("{:.4g} Hz, {:.1f} times white", w.peak_frequency, w.peak_power),
                           format_probability(w.peak_p)});
   }
   return table;
 }
 
-/// One strength where the ports share it, without the correlation time.
 std::string force_text(const std::map<std::string, Estimate>& force) {
-  std::string out;
-  for (const auto& [port, e] : force) {
-    if (e.unit == "s") continue;
-    const std::string text = shown(e);
-    if (out.find(text) == std::string::npos) out += (out.empty() ? "" : ", ") + text;
-  }
-  return out.empty() ? kMissing : out;
+  const auto forces = force_strengths(force);
+  return forces.empty() ? kMissing : in_words(forces);
 }
 
 std::string values_text(const std::map<std::string, Estimate>& estimates) {
@@ -94,7 +88,7 @@ class BeforeAndAfter {
     add_channels("one step ahead", before.rms, after.rms);
     add_steps(before, after);
     add_channels("held out, one step ahead", before.validation_rms, after.validation_rms);
-    add("random force", force_text(before.force), force_text(after.force), change_of_force(before, after));
+    add_force(force_strengths(before.force), force_strengths(after.force));
     if (before.trim || after.trim) add("trim", shown(before.trim), shown(after.trim));
     if (!after.actual_drop) return;
     add("log-likelihood", shown_drop(before.loglik), shown_drop(after.loglik));
@@ -131,10 +125,20 @@ class BeforeAndAfter {
       add_channels(fmt::format("{} steps ahead", kLadderSteps[k]), at(before), at(after));
     }
   }
-  static std::string change_of_force(const Rung& before, const Rung& after) {
-    const auto was = force_strength(before.force), is = force_strength(after.force);
-    if (!was || !is) return kMissing;
-    return within_sigma(*was, *is) ? "within its sigma" : change(was->value, is->value);
+  /// A row for each unit of the ports, those of before first.
+  void add_force(const std::vector<ForceStrength>& before, const std::vector<ForceStrength>& after) {
+    std::vector<ForceStrength> all = before;
+    for (const ForceStrength& f : after) {
+      if (!strength_in(before, f.strength.unit)) all.push_back(f);
+    }
+    if (all.empty()) add("random force", kMissing, kMissing, kMissing);
+    for (const ForceStrength& f : all) {
+      const auto was = strength_in(before, f.strength.unit), is = strength_in(after, f.strength.unit);
+      add(all.size() > 1 ? "random force on " + f.port : "random force", shown(was), shown(is),
+          !was || !is               ? kMissing
+          : within_sigma(*was, *is) ? "within its sigma"
+                                    : change(was->value, is->value));
+    }
   }
 };
 

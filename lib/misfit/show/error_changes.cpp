@@ -49,10 +49,13 @@ void most_telling_first(std::vector<ErrorChange>& errors) {
 
 std::vector<ErrorChange> errors_of(const Fit& fit) {
   std::vector<ErrorChange> out;
-  const auto force = force_strength(fit.force);
+  const auto forces = force_strengths(fit.force);
   for (const auto& [channel, rms] : fit.rms)
-    out.push_back({ErrorKind::rms_error, channel + (force ? ", one sample ahead" : ""), rms, std::nullopt, share_of_motion(fit, channel)});
-  if (force) out.push_back({ErrorKind::random_force, "", *force, std::nullopt, is_seen(fit, *force) ? "" : "not distinguishable from 0"});
+    out.push_back(
+        {ErrorKind::rms_error, channel + (forces.empty() ? "" : ", one sample ahead"), rms, std::nullopt, share_of_motion(fit, channel)});
+  for (const ForceStrength& f : forces)
+    out.push_back({ErrorKind::random_force, forces.size() > 1 ? f.port : "", f.strength, std::nullopt,
+                   is_seen(fit, f.strength) ? "" : "not distinguishable from 0"});
   return out;
 }
 
@@ -71,8 +74,11 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, con
     change.after->value = after->second[farthest];
     out.push_back(std::move(change));
   }
-  const auto before = force_strength(first.force), force = force_strength(last.force);
-  if (before && force) out.push_back({ErrorKind::random_force, "", *before, *force, ""});
+  const auto before = force_strengths(first.force), after = force_strengths(last.force);
+  for (const ForceStrength& f : before) {
+    if (const auto strength = strength_in(after, f.strength.unit))
+      out.push_back({ErrorKind::random_force, before.size() > 1 ? f.port : "", f.strength, strength, ""});
+  }
   most_telling_first(out);
   return out;
 }

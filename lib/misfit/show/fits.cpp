@@ -26,8 +26,9 @@ std::string range_of(const CurveEstimate& curve) {
     if (!std::isfinite(lowest)) lowest = curve.x[i];
     highest = curve.x[i];
   }
+  if (!std::isfinite(lowest)) return kMissing;  // nothing was visited
   const std::string range =
-      fmt::format("from {:.1f} to {:.1f}", display_value(lowest, curve.of_unit), display_value(highest, curve.of_unit));
+      fmt::format("from {:.4g} to {:.4g}", display_value(lowest, curve.of_unit), display_value(highest, curve.of_unit));
   return with_display_unit(range, curve.of_unit) + " of " + curve.of;
 }
 

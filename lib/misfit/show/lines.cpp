@@ -56,8 +56,10 @@ std::vector<std::string> warnings(const Fit& fit) {
   return first_of(std::move(out), most);
 }
 
-std::string force_in_words(const Fit& fit, const Estimate& force) {
-  return is_seen(fit, force) ? "random force " + shown(force) : "random force not distinguishable from 0";
+/// Without those that cannot be distinguished from 0, where others can.
+std::string force_in_words(const Fit& fit, std::vector<ForceStrength> forces) {
+  std::erase_if(forces, [&](const ForceStrength& f) { return !is_seen(fit, f.strength); });
+  return forces.empty() ? "random force not distinguishable from 0" : "random force " + in_words(forces);
 }
 
 }  // namespace
@@ -97,9 +99,9 @@ std::string line_of(const Fit& fit) {
   if (fit.trim) parts.push_back("trim " + shown(*fit.trim));
   if (!fit.trim) parts.push_back(joined(scalars(fit), ", "));
   const std::vector<std::string> errors = residuals(fit);
-  const auto force = force_strength(fit.force);
-  if (!errors.empty() && !force) parts.push_back("RMS error of " + joined(errors, ", of "));
-  if (force) parts.push_back(force_in_words(fit, *force));
+  const auto forces = force_strengths(fit.force);
+  if (!errors.empty() && forces.empty()) parts.push_back("RMS error of " + joined(errors, ", of "));
+  if (!forces.empty()) parts.push_back(force_in_words(fit, forces));
   if (fit.status == FitStatus::not_converged) parts.push_back("not converged: " + fit.message);
   std::erase(parts, "");
   const auto silent = std::count_if(fit.curves.begin(), fit.curves.end(), [](const CurveEstimate& curve) { return !curve.informative; });
@@ -148,7 +150,7 @@ std::string line_of(const Rung& rung) {
   for (const auto& [name, e] : rung.parameters) {
     if (parts.size() < most_parameters) parts.push_back(name + " " + shown(e));
   }
-  if (const auto force = force_strength(rung.force)) parts.push_back("random force " + shown(*force));
+  if (const auto forces = force_strengths(rung.force); !forces.empty()) parts.push_back("random force " + in_words(forces));
   return joined(parts, ", ");
 }
 

@@ -57,9 +57,24 @@ std::string briefly(const Estimate& e) {
 
 std::string shown(const std::optional<Estimate>& e) { return e ? shown(*e) : kMissing; }
 
-std::optional<Estimate> force_strength(const std::map<std::string, Estimate>& force) {
-  const auto found = std::find_if(force.begin(), force.end(), [](const auto& f) { return f.second.unit != "s"; });
-  return found == force.end() ? std::nullopt : std::optional(found->second);
+std::vector<ForceStrength> force_strengths(const std::map<std::string, Estimate>& force) {
+  std::vector<ForceStrength> out;
+  for (const auto& [port, e] : force) {
+    if (e.unit != "s" && !strength_in(out, e.unit)) out.push_back({port, e});
+  }
+  return out;
+}
+
+std::optional<Estimate> strength_in(const std::vector<ForceStrength>& forces, const std::string& unit) {
+  const auto alike = [&](const ForceStrength& f) { return parse_unit(f.strength.unit).same_dimension(parse_unit(unit)); };
+  const auto found = std::find_if(forces.begin(), forces.end(), alike);
+  return found == forces.end() ? std::nullopt : std::optional(found->strength);
+}
+
+std::string in_words(const std::vector<ForceStrength>& forces) {
+  std::string out;
+  for (const ForceStrength& f : forces) out += (out.empty() ? "" : ", ") + shown(f.strength) + (forces.size() > 1 ? " on " + f.port : "");
+  return out;
 }
 
 bool is_seen(const Fit& fit, const Estimate& force) { return fit.driven || force.sigma > 0.0; }

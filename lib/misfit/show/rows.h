@@ -50,8 +50,19 @@ inline constexpr const char* kMissing = "–";
 [[nodiscard]] std::string briefly(const Estimate& e);
 /// kMissing without a value, as the next two.
 [[nodiscard]] std::string shown(const std::optional<Estimate>& e);
-/// The strength of a random force, the first in the order of its ports: without correlation times. nullopt: there is none.
-[[nodiscard]] std::optional<Estimate> force_strength(const std::map<std::string, Estimate>& force);
+
+/// The strength of a random force, which its ports of one unit share.
+struct ForceStrength {
+  std::string port;  ///< the first of them
+  Estimate strength;
+};
+/// One for each unit, in the order of their ports: without correlation times. Empty: there is no random force.
+[[nodiscard]] std::vector<ForceStrength> force_strengths(const std::map<std::string, Estimate>& force);
+/// That on ports of a unit; nullopt: there is none.
+[[nodiscard]] std::optional<Estimate> strength_in(const std::vector<ForceStrength>& forces, const std::string& unit);
+/// "20.0 ± 1.0 V/s"; of several with their ports: "20.0 ± 1.0 V/s on dw/dt, 3.0 ± 0.1 m/s^2 on dv/dt".
+[[nodiscard]] std::string in_words(const std::vector<ForceStrength>& forces);
+
 /// Whether the random force of a fit can be distinguished from 0.
 [[nodiscard]] bool is_seen(const Fit& fit, const Estimate& force);
 /// With one decimal and, for a change, its sign.

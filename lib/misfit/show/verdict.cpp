@@ -126,8 +126,7 @@ class VerdictBuilder {
     out_.next = next;
   }
   [[nodiscard]] std::string command(const std::string& verb, const std::string& effect = "") const {
-    return "misfit " + verb + " " + shell_word(in_.study) + (effect.empty() ? "" : " " + effect) +
-           (in_.out.empty() ? "" : " --out " + shell_word(in_.out));
+    return misfit_command(verb, in_.study, effect, in_.out);
   }
 
   [[nodiscard]] static std::string at_place(const std::map<std::string, std::string>& roles) {
@@ -240,9 +239,9 @@ class VerdictBuilder {
   }
   /// The random force that the refit with the candidate leaves.
   void with_candidate(const Candidate& best) {
-    const auto after = force_strength(best.force);
+    const auto after = force_strengths(best.force);
     for (ErrorChange& e : out_.errors) {
-      if (e.kind == ErrorKind::random_force && after) e.after = after;
+      if (e.kind == ErrorKind::random_force) e.after = strength_in(after, e.before.unit);
     }
     std::stable_partition(out_.errors.begin(), out_.errors.end(), [](const ErrorChange& e) { return e.after.has_value(); });
   }
@@ -288,10 +287,11 @@ class VerdictBuilder {
     const auto effects = std::count_if(d.candidates.begin(), d.candidates.end(),
                                        [](const Candidate& c) { return c.family != CandidateFamily::unknown && !c.described; });
     const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", effects);
-    const auto force = fit_->driven ? force_strength(fit_->force) : std::nullopt;
+    auto forces = fit_->driven ? force_strengths(fit_->force) : std::vector<ForceStrength>{};
     constexpr double sigmas = 2.0;
-    if (force && force->value > sigmas * force->sigma) {
-      say(VerdictKind::random_force, tested + ", and what is left is a random force of " + shown(*force), "");
+    std::erase_if(forces, [](const ForceStrength& f) { return !(f.strength.value > sigmas * f.strength.sigma); });
+    if (!forces.empty()) {
+      say(VerdictKind::random_force, tested + ", and what is left is a random force of " + in_words(forces), "");
     } else {
       say(VerdictKind::nothing_missing, tested, "");
     }

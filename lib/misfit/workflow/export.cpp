@@ -7,6 +7,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shell_word.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/version.h"
 #include "misfit/core/written_files.h"
@@ -71,7 +72,7 @@ bool is_there(const Session& session, const std::string& method) {
 }
 
 std::string made_by(const Session& session, const std::string& method) {
-  return "misfit fit " + session.study.file.lexically_normal().string() + " --method " + method + " makes it";
+  return misfit_command("fit", session.study.file.lexically_normal().string(), "--method " + method, session.options.out) + " makes it";
 }
 
 /// The fit of that method as it lies in the run folder.
@@ -209,6 +210,7 @@ ExportReport export_stage(const SessionOptions& options, const Registry& registr
   }
   const bool code = format.name == std::string("c") || format.name == std::string("python");
   if (code) out.lack = opened.exported.model ? model_formulas(*opened.exported.model).lack : "it has no model";
+  if (format.name == std::string("jsbsim")) out.left_out = effects_not_in_jsbsim(opened.exported);
   out.exported = std::move(opened.exported);
   return out;
 }

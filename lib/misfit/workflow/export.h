@@ -21,8 +21,9 @@ struct ExportRequest {
 struct ExportReport {
   Exported exported;
   std::vector<std::filesystem::path> files;
-  std::string text;  ///< instead of a file where the path is "-"
-  std::string lack;  ///< why a C or Python file has no right-hand side; empty: it has one, or the format has none
+  std::string text;                   ///< instead of a file where the path is "-"
+  std::vector<std::string> left_out;  ///< effects of the model that a file for JSBSim does not have
+  std::string lack;                   ///< why a C or Python file has no right-hand side; empty: it has one, or the format has none
 };
 
 /// "json", "csv", "c", "python", "jsbsim".
