@@ -66,11 +66,15 @@ Estimation run_output_error(const EstimationTask& task) {
   options.from_regression = start.regressed;
   out.at.fitted = output_error(start.from, task.experiments, options);
   if (out.at.fitted.fit.status != FitStatus::failed || !start.regressed) return out;
-  options.from_regression = false;
-  FittedModel own = output_error({{}, task.model, curve_penalties(task.model), {}}, task.experiments, options);
-  if (!own.fit.usable()) return out;
-  own.fit.warnings.push_back(begun_at_own_values(out.at.fitted.fit.message));
-  out.at.fitted = std::move(own);
+  // The short segments that rough values need cannot be run where a few samples say too little of a state; then without them.
+  for (const bool longer_segments : {false, true}) {
+    options.from_regression = longer_segments;
+    FittedModel own = output_error({{}, task.model, curve_penalties(task.model), {}}, task.experiments, options);
+    if (!own.fit.usable()) continue;
+    own.fit.warnings.push_back(begun_at_own_values(out.at.fitted.fit.message));
+    out.at.fitted = std::move(own);
+    break;
+  }
   return out;
 }
 

@@ -42,13 +42,15 @@ RateSizes rate_sizes(const FilterModel& model, const FilterData& data, const Rec
   return out;
 }
 
-/// |dx'/dF| of each system state and force, the largest of a few samples: it may depend on the state and on inputs.
-Eigen::MatrixXd largest_gains(const FilterModel& model, const FilterData& data) {
+/// |dx'/dF| of each system state and force at the first sample; where that is next to nothing beside the largest of a few samples (a gain
+/// may depend on the state and on inputs), the largest.
+Eigen::MatrixXd usual_gains(const FilterModel& model, const FilterData& data) {
   constexpr std::size_t samples = 20;
+  constexpr double next_to_nothing = 0.01;
   Evaluator evaluator(model.model);
   const int n = evaluator.states(), system = model.model.system_states();
   std::vector<double> dx(n), D(n * kRowStride);
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(system, std::ssize(model.force_states));
+  Eigen::MatrixXd first = Eigen::MatrixXd::Zero(system, std::ssize(model.force_states)), largest = first;
   Eigen::VectorXd x = data.start;
   const std::size_t last = data.signals->samples(), stride = std::max<std::size_t>((last - data.first) / samples, 1);
   for (std::size_t k = data.first; k < last; k += stride) {
@@ -57,20 +59,22 @@ Eigen::MatrixXd largest_gains(const FilterModel& model, const FilterData& data) 
     if (k > data.first) x.head(system) = data.read->x.row(row).head(system).transpose();
     Slots slots;
     evaluator.linearise_rates({x.data(), data.inputs.at(k), data.signals->t[k]}, slots, dx.data(), D.data());
-    for (Eigen::Index f = 0; f < out.cols(); ++f) {
+    for (Eigen::Index f = 0; f < first.cols(); ++f) {
       for (int i = 0; i < system; ++i) {
         const double gain = std::abs(D[i * kRowStride + model.force_states[f]]);
-        if (std::isfinite(gain)) out(i, f) = std::max(out(i, f), gain);
+        if (!std::isfinite(gain)) continue;
+        if (k == data.first) first(i, f) = gain;
+        largest(i, f) = std::max(largest(i, f), gain);
       }
     }
   }
-  return out;
+  return (first.array() > next_to_nothing * largest.array()).select(first, largest);
 }
 
 /// Size of a random force that alone would cause the accelerations: the largest RMS of x' over |dx'/dF|, over the states on which a force
 /// of the group acts; of those that channels show, if there are any. 1 where it acts on none.
 double force_size(const FilterModel& model, int group, const FilterData& data, const RateSizes& rates) {
-  const Eigen::MatrixXd gains = largest_gains(model, data);
+  const Eigen::MatrixXd gains = usual_gains(model, data);
   double shown = 0.0, hidden = 0.0;
   for (std::size_t force = 0; force < model.force_states.size(); ++force) {
     if (model.force_group[force] != group) continue;
