@@ -22,6 +22,13 @@ TEST(LineOfAFit, GivesTheRandomForceOrWithoutOneTheResiduals) {
   EXPECT_EQ(line_of(fit), "gain 2.00 ± 0.10 V; random force 20.0 ± 1.0 V/s");
 }
 
+TEST(LineOfAFit, SaysWhatAWarningOfAnExperimentIsAbout) {
+  Fit fit = filter();
+  fit.warnings = {"experiment 'bench': the gaps are not random: in 30 of 31 missing samples the motion left the picture"};
+  EXPECT_THAT(line_of(fit), testing::HasSubstr("; ! the gaps are not random"));
+  EXPECT_THAT(line_of(fit), testing::Not(testing::HasSubstr("experiment")));
+}
+
 TEST(LineOfAFit, SaysWhatItLeavesOut) {
   Fit fit = filter();
   for (const char* name : {"a", "b", "c", "d", "e"}) fit.parameters[name] = {1.0, 0.1, "V"};

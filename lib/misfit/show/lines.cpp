@@ -52,7 +52,11 @@ std::vector<std::string> scalars(const Fit& fit) {
 std::vector<std::string> warnings(const Fit& fit) {
   constexpr std::size_t most = 2;
   std::vector<std::string> out;
-  for (const std::string& warning : fit.warnings) out.push_back(warning.substr(0, std::min(warning.find(": "), warning.find(" ("))));
+  for (std::string warning : fit.warnings) {
+    if (const std::size_t end = warning.find("': "); warning.starts_with("experiment '") && end != std::string::npos)
+      warning.erase(0, end + 3);  // of which experiment: in full
+    out.push_back(warning.substr(0, std::min(warning.find(": "), warning.find(" ("))));
+  }
   return first_of(std::move(out), most);
 }
 
