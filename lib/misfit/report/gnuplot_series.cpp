@@ -14,7 +14,7 @@ namespace misfit::report {
 namespace {
 
 constexpr std::size_t most_vertices = 5000;  // some five for each pixel of the axes
-constexpr std::size_t most_dots = 3000;      // one costs a drawing ten times the bytes of a vertex
+constexpr std::size_t most_dots = 2000;      // one costs a drawing ten times the bytes of a vertex
 
 bool is_dots(Style style) { return style == Style::points || style == Style::markers; }
 
