@@ -24,8 +24,8 @@ namespace misfit {
 [[nodiscard]] std::string undetermined_starts(const Model& model, const Eigen::MatrixXd& precision,
                                               const std::vector<Signals>& experiments);
 
-/// The same as undetermined() where `problem` carries the very wide priors of regularised_priors(): only those that the model states count. `sigma2`: the
-/// variance of one of its residuals.
+/// The same as undetermined() where `problem` carries the very wide priors of regularised_priors(): only those that the model states count.
+/// `sigma2`: the variance of one of its residuals.
 [[nodiscard]] std::string undetermined_beside_priors(const Model& model, NormalEquations problem, double sigma2);
 
 /// Weakly determined directions, as warnings: parameters, and curves as a whole (their scale), that compensate each other — smallest
