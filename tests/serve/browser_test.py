@@ -502,6 +502,13 @@ def film():
     server.end()
 
 
+def numbers_far_from_zero_are_told_apart(page):
+    said = page.driver.execute_async_script("""const done = arguments[0];
+        import('/dom.js').then((dom) => done([dom.tick(1700000010, 10), dom.tick(1700000020, 10), dom.tick(101325.5, 0.5), dom.tick(0.125, 0.125),
+            dom.tick(-2000000, 500000), dom.tick(0, 1), dom.shownPlace(1700000012.3456, 79), dom.shownPlace(12.34567, 79), dom.shownPlace(0, 79)]))""")
+    assert said == ["1700000010", "1700000020", "101325.5", "0.125", "−2e6", "0", "1700000012.35", "12.346", "0"], said
+
+
 def mend():
     """A study with an error is mended in the page."""
     good = read(STUDY)
@@ -511,6 +518,7 @@ def mend():
     page = Page(server.address)
     page.wait(lambda: "The study has an error" in page.text("#alerts"), "the error")
     assert not page.one("#run").is_enabled()
+    numbers_far_from_zero_are_told_apart(page)
     page.click("#fault button")
     area = page.wait(lambda: page.one("#view textarea"), "the text")
     assert [bad.text for bad in page.driver.find_elements(By.CSS_SELECTOR, ".editor pre .bad")] == ["5", "16"], "every fault, at its line"

@@ -107,10 +107,20 @@ export function shown(value, digits = 4) {
   return text.replace('-', '−');
 }
 
-/** Beside an axis, as short as it goes: "20", "0.125", "1e6", "−2.5e−9". */
-export function tick(value) {
-  const size = Math.abs(value), text = Number(value.toPrecision(6));
-  return (size !== 0 && (size >= 1e6 || size < 1e-3) ? text.toExponential().replace('e+', 'e') : String(text)).replaceAll('-', '−');
+/** Significant digits with which numbers of this size are told apart that differ by `difference`, such as times in UNIX seconds. */
+const digitsFor = (value, difference) => (value === 0 || !(difference > 0) ? 1 : Math.floor(Math.log10(Math.abs(value) / difference)) + 2);
+
+/** A place on an axis of which `span` is seen: to a thousandth of it, and with five digits at least. */
+export function shownPlace(value, span) {
+  const digits = Math.min(digitsFor(value, span) + 3, 15);
+  return digits <= 5 || !Number.isFinite(value) ? shown(value, 5) : String(Number(value.toPrecision(digits))).replaceAll('-', '−');
+}
+
+/** Beside an axis, as short as it goes: "20", "0.125", "1e6", "−2.5e−9"; neighbours, a `step` apart, differ. */
+export function tick(value, step = 0) {
+  const size = Math.abs(value), digits = Math.min(Math.max(digitsFor(value, step), 6), 15), text = Number(value.toPrecision(digits));
+  const short = digits === 6 && size !== 0 && (size >= 1e6 || size < 1e-3);
+  return (short ? text.toExponential().replace('e+', 'e') : String(text)).replaceAll('-', '−');
 }
 
 /** "12.3 ± 4.5": the sigma with two digits, the value with as many places. */

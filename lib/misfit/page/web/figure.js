@@ -1,7 +1,7 @@
 // Draws a figure of the report (lib/misfit/report/figure.h) with uPlot: axes, zoom and cursor are uPlot's, the series are painted here, thinned
 // to what the screen has pixels for (least and largest value of each column).
 import uPlot from '/uPlot.esm.js';
-import { element, plain, shown, shownWithSigma, tick, words } from '/dom.js';
+import { element, plain, shown, shownPlace, shownWithSigma, tick, words } from '/dom.js';
 
 const darkScreen = matchMedia('(prefers-color-scheme: dark)');
 const onDark = { '#000000': '#e4e7ea', '#8a8a8a': '#8f989f', '#0072b2': '#5fb4ea', '#d55e00': '#ff8c42', '#009e73': '#37c79b', '#cc79a7': '#e39cc4',
@@ -205,7 +205,7 @@ class Plot {
   /** What stands at a place: "12.35 s · measured 121 · predicted 121.1 ± 1.8 px". */
   words(x) {
     const xUnit = plain(this.figure.xUnit), unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
-    const out = [`${this.view.group ? '' : `${plain(this.figure.xLabel)} `}${shown(x, 5)}${behind(xUnit)}`];
+    const out = [`${this.view.group ? '' : `${plain(this.figure.xLabel)} `}${shownPlace(x, this.window[1] - this.window[0])}${behind(xUnit)}`];
     for (const { s, name, sigma } of this.values) {
       if (s.x.length === 0) continue;
       const k = nearest(s.x, x), v = s.y?.[k] ?? null, lo = sigma?.band.lo[k] ?? null, hi = sigma?.band.hi[k] ?? null;
@@ -236,9 +236,10 @@ class Plot {
   axes() {
     const ink = style('--soft'), line = style('--line'), font = '12px "Segoe UI", Helvetica, Arial, "DejaVu Sans", sans-serif';
     const axis = { stroke: ink, font, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1, size: 4 }, gap: 4 };
-    const values = (u, splits) => splits.map((v) => (v === null ? '' : tick(v)));
+    const values = (u, splits, axis, space, step) => splits.map((v) => (v === null ? '' : tick(v, step)));
+    const letters = (low, high) => Math.max(...[low, high].map((v) => tick(v, 0.1 * (high - low)).length));
     const marked = (marks) => ({ splits: () => marks.map(([at]) => at), values: () => marks.map(([, text]) => plain(text)) });
-    const x = { ...axis, values, show: true, size: this.last || this.panel.beside ? 26 : 8 };
+    const x = { ...axis, values, show: true, space: (u, axis, low, high) => Math.max(50, 7.4 * letters(low, high) + 14), size: this.last || this.panel.beside ? 26 : 8 };
     const names = this.figure.xMarks;
     if (names.length > 0 && !this.panel.beside)
       Object.assign(x, marked(names), { values: () => names.map(([, text]) => shortened(plain(text), Math.max(Math.floor((this.width() - 70) / names.length / 7.4), 5))) });

@@ -1,5 +1,5 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
-import { askingButton, blocks, breakable, element, fittedTable, plain, shown, words } from '/dom.js';
+import { askingButton, blocks, breakable, element, fittedTable, plain, shown, shownPlace, words } from '/dom.js';
 import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
 import { get, live, post, Refused } from '/server.js';
 import { editor } from '/editor.js';
@@ -359,7 +359,7 @@ class Film {
     for (const [node, place] of [[circle, measured], [cross, predicted]]) node.style.display = place ? '' : 'none';
     if (measured) for (const [key, value] of [['cx', measured[0]], ['cy', measured[1]], ['r', size]]) circle.setAttribute(key, value);
     if (predicted) cross.setAttribute('d', `M${predicted[0] - size} ${predicted[1]}h${2 * size}M${predicted[0]} ${predicted[1] - size}v${2 * size}`);
-    const said = [`Frame at ${shown(frame.t, 5)} s`];
+    const said = [`Frame at ${timeShown(frame.t)} s`];
     if (measured) said.push('yellow: measured');
     if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.motion.method]}`);
     at('frame-words').textContent = said.join(' · ');
@@ -402,9 +402,14 @@ function unmark() {
   }
   mark([], '', true);
 }
+/** As exactly as what is seen of the motion tells. */
+function timeShown(t) {
+  const [from, to] = here.timeFigures[0]?.plots[0]?.window ?? [0, 0];
+  return shownPlace(t, to - from);
+}
 time.onzoom = (window) => { at('time').dataset.window = window === null ? '' : window.join(' '); };
-time.onbegun = (t) => { at('marked').textContent = `Marked from ${shown(t, 5)} s: m again where it ends`; };
-time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${shown(from, 5)} s to ${shown(to, 5)} s`, true);
+time.onbegun = (t) => { at('marked').textContent = `Marked from ${timeShown(t)} s: m again where it ends`; };
+time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${timeShown(from)} s to ${timeShown(to)} s`, true);
 
 /** Two times, to a millionth of what lies between them: a mouse knows no more. */
 function written([from, to]) {
