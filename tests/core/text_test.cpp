@@ -15,6 +15,14 @@ TEST(FormatInterval, IsToTheDigitsOfSigma) {
   EXPECT_EQ(format_interval(1.23e7, 1.31e7, 2e5), "1.23e+07 to 1.31e+07");
 }
 
+TEST(FormatToStep, HasTheDigitsThatAStepTakes) {
+  EXPECT_EQ(format_to_step(101324.9, 1.0), "101325");
+  EXPECT_EQ(format_to_step(1.3249, 0.1), "1.3");
+  EXPECT_EQ(format_to_step(-0.04, 0.1), "0");
+  EXPECT_EQ(format_to_step(1700000012.34, 0.1), "1700000012.3");
+  EXPECT_EQ(format_to_step(3.1234e-9, 1e-11), "3.12e-09");
+}
+
 TEST(FormatValue, GivesSigmaTwoDigitsAndTheValueTheSamePlace) {
   EXPECT_EQ(format_value(12.0312, 0.21), "12.03 ± 0.21");
   EXPECT_EQ(format_value(-0.6, 0.0456), "-0.600 ± 0.046");

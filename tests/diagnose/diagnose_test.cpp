@@ -55,5 +55,18 @@ TEST(WhereItFails, TheSigmaOfARunOfHatsHoldsTheirCorrelation) {
   EXPECT_EQ(where_it_fails(map, covariance), "the model's M is 43.5 ± 5.7 N m too high where V is between 0.5 m/s and 2.5 m/s");
 }
 
+TEST(WhereItFails, EndsThatDifferLittleAreToldApart) {
+  ForceMap map;
+  map.port = "M";
+  map.port_unit = "N m";
+  map.quantity = "p";
+  map.quantity_unit = "Pa";
+  map.x = {101322.0, 101324.0, 101326.0};
+  map.amplitude = {0.0, 44.0, 0.0};
+  map.sigma = {6.0, 6.0, 6.0};
+  EXPECT_EQ(where_it_fails(map, 36.0 * Eigen::MatrixXd::Identity(3, 3)),
+            "the model's M is 44.0 ± 6.0 N m too low where p is between 101323 Pa and 101325 Pa");
+}
+
 }  // namespace
 }  // namespace misfit

@@ -61,6 +61,13 @@ std::string format_value(double value, double sigma) {
   return fmt::format("({} ± {})e{}", fixed(value / scale, decimals + exponent), fixed(sigma / scale, decimals + exponent), exponent);
 }
 
+std::string format_to_step(double value, double step) {
+  constexpr int usual = 5, all = 15;
+  const double rounded = std::round(value / step) * step + 0.0;  // no "-0"
+  const int digits = rounded == 0.0 ? usual : static_cast<int>(std::floor(std::log10(std::abs(rounded) / step) + 1e-9)) + 1;
+  return fmt::format("{:.{}g}", rounded, std::clamp(digits, usual, all));
+}
+
 std::string format_interval(double low, double high, double sigma) {
   const auto end = [&](double value) {
     const std::string whole = format_value(value, sigma);

@@ -10,6 +10,9 @@ namespace misfit {
 /// finite sigma: five significant digits. NaN → "not available".
 [[nodiscard]] std::string format_value(double value, double sigma = 0.0);
 
+/// Rounded to a multiple of `step`, with the digits that this takes and at least five: (101324.9, 1) → "101325".
+[[nodiscard]] std::string format_to_step(double value, double step);
+
 /// "26.10 to 29.57": both to the digits of `sigma` (five significant ones without it).
 [[nodiscard]] std::string format_interval(double low, double high, double sigma);
 

@@ -24,7 +24,7 @@ constexpr double significant = 0.01;  // corrected for all maps
 std::string place(double value, double width, const std::string& unit) {
   const double shown = display_value(width, unit);
   const double step = shown > 0.0 ? std::pow(10.0, std::floor(std::log10(shown)) - 1.0) : 1e-3;
-  return with_level_unit(format_value(std::round(display_level(value, unit) / step) * step), unit);
+  return with_level_unit(format_to_step(display_level(value, unit), step), unit);
 }
 
 /// A force that is the same at all hours is none that depends on the hour: what is said is beside the median.
