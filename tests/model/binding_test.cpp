@@ -76,6 +76,22 @@ TEST(Binding, AValueUnderTheEffectsNameTurnsADefaultCurveIntoANumber) {
   }
 }
 
+/// A study names a curve before a second effect of the kind comes into the model: the curve stays that of the first.
+TEST(Binding, ACurveOfTheFirstOfAKindMayHaveItsBareName) {
+  ModelRequest r = cart({effect("viscous_friction", {}, "bearing"), effect("viscous_friction", {{"rate", "x"}, {"port", "slip"}}, "leak")});
+  r.curves["viscosity"] = {"v", {}, 7.0, {}};
+  EXPECT_THAT(curves_without_knots(r, registry()), ElementsAre(std::pair<const std::string, std::string>("viscosity", "v")));
+  r.curves["viscosity"].knots = {-1.0, 0.0, 1.0};
+  EXPECT_TRUE(curves_without_knots(r, registry()).empty());
+  const Model m = assemble(r, registry());
+  ASSERT_NE(m.find_curve("bearing.viscosity"), nullptr);
+  EXPECT_EQ(m.find_curve("bearing.viscosity")->roughness, 7.0);
+  EXPECT_GE(m.find_parameter("leak.viscosity"), 0);
+  ModelRequest alone = cart({effect("viscous_friction", {}, "bearing")});
+  alone.curves["bearing.viscosity"] = {"v", {-1.0, 0.0, 1.0}, 7.0, {}};
+  EXPECT_NE(assemble(alone, registry()).find_curve("viscosity"), nullptr) << "by its effect, too";
+}
+
 TEST(Binding, ARoleMayNeedTheUnitOfAnother) {
   const auto spill = [](const std::string& level, const std::string& port) {
     return tanks({effect("overflow", {{"level", level}, {"port", port}})});

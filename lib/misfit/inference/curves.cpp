@@ -8,6 +8,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/math/covariance.h"
+#include "misfit/model/provisional.h"
 
 namespace misfit {
 namespace {
@@ -181,17 +182,13 @@ std::vector<double> choose_knots(std::vector<double> visited, int intervals, con
 void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals) {
   const auto open = curves_without_knots(request, registry);
   if (open.empty()) return;
-  ModelRequest probe = request;  // any knots do: only quantities are evaluated
-  for (const auto& [name, of] : open) {
-    probe.curves[name].of = of;
-    probe.curves[name].knots = {1.0, 2.0};
-  }
-  const Model model = assemble(probe, registry);
+  const Model model = provisional_model(request, registry);  // only quantities are evaluated
+  const auto names = parameter_names(request, registry);
   std::map<std::string, std::vector<double>> visited;
   for (const auto& experiment : experiments) {
     const RowMatrix values = visited_quantities(model, experiment, reconstruct_states(model, experiment));
     for (const auto& [name, of] : open) {
-      const Curve& curve = *model.find_curve(name);
+      const Curve& curve = *model.find_curve(names.at(name));
       for (const double value : values.col(curve.quantity)) visited[name].push_back(folded(value, curve));
     }
   }

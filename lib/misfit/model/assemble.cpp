@@ -55,7 +55,7 @@ std::map<std::string, std::string> Assembler::curves_without_knots() {
     for (std::size_t c = 0; c < spec.coefficients.size(); ++c) {
       if (spec.coefficients[c].shared) continue;
       const auto curve = curve_request(names_[i][c], spec.coefficients[c], request_.effects[i]);
-      if (curve && curve->knots.empty()) open[names_[i][c]] = curve->of;
+      if (curve && curve->knots.empty()) open[curve_in_request(names_[i][c])] = curve->of;
     }
   }
   return open;

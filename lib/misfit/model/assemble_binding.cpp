@@ -170,7 +170,7 @@ bool Assembler::is_over_sine(const CoefficientSpec& spec, int quantity) const {
 
 int Assembler::add_curve(const std::string& name, const CoefficientSpec& spec, const CurveRequest& request, const EffectRequest& by,
                          PortKind kind) {
-  used_curves_.insert(name);
+  used_curves_.insert(curve_in_request(name));
   if (request.of.empty()) throw InputError(request.where, "curve " + name + ": `of` must name a quantity" + suggest("", quantity_names()));
   Curve curve;
   curve.name = name;

@@ -87,8 +87,14 @@ std::vector<std::string> Assembler::owned_names() const {
   return names;
 }
 
+/// What the request calls the curve; its name in the model where nothing is requested of it.
+std::string Assembler::curve_in_request(const std::string& name) const {
+  const auto alias = aliases_.find(name);
+  return !request_.curves.contains(name) && alias != aliases_.end() && request_.curves.contains(alias->second) ? alias->second : name;
+}
+
 std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec, const EffectRequest& by) const {
-  const auto found = request_.curves.find(name);
+  const auto found = request_.curves.find(curve_in_request(name));
   const ParameterRequest* number = parameter_request(name);
   const bool asked = found != request_.curves.end(), is_number = number != nullptr && number->value;
   if (!asked && (spec.curve_of[0] == '\0' || is_number)) return std::nullopt;

@@ -46,6 +46,7 @@ class Assembler {
   std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const;
   std::vector<std::string> owned_names() const;
   /// What the study asks of a coefficient as a curve, else what its specification says; nullopt: a number.
+  std::string curve_in_request(const std::string& name) const;
   std::optional<CurveRequest> curve_request(const std::string& name, const CoefficientSpec& spec, const EffectRequest& by) const;
   void bind(std::size_t i);
   /// Unit of what each role stands for; "-" where an optional role is absent (a wrong name is reported when it is bound).

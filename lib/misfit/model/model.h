@@ -159,7 +159,8 @@ struct Model {
 /// curve must have knots by now. A coefficient is called by its own name, or EFFECT.NAME where two effects of the model would share it.
 [[nodiscard]] Model assemble(const ModelRequest& request, const Registry& registry);
 
-/// Curves of the model that still need knots (name → quantity), before assembling: from `request.curves` and the effects' defaults.
+/// Curves of the model that still need knots (name → quantity), before assembling: from `request.curves` and the effects' defaults. The name
+/// is that of `request.curves` if the curve stands there, else that in the model; parameter_names() knows both.
 [[nodiscard]] std::map<std::string, std::string> curves_without_knots(const ModelRequest& request, const Registry& registry);
 
 /// Unit of every parameter and curve by its name in the model to be, before assembling: to read values that a study writes with units.

@@ -7,19 +7,11 @@
 
 #include "misfit/core/error.h"
 #include "misfit/data/study_edit.h"
+#include "misfit/model/provisional.h"
 #include "misfit/workflow/ladder.h"
 
 namespace misfit {
 namespace {
-
-/// Does a model with this request come together? Knots still to be chosen are stood in for.
-void try_assemble(ModelRequest request, const Registry& registry) {
-  for (const auto& [name, of] : curves_without_knots(request, registry)) {
-    request.curves[name].of = of;
-    request.curves[name].knots = {1.0, 2.0};
-  }
-  std::ignore = assemble(request, registry);
-}
 
 bool same_effect(const EffectRequest& a, const std::string& kind, const std::map<std::string, std::string>& roles) {
   return a.kind == kind && a.roles == roles;
@@ -109,7 +101,7 @@ std::vector<std::string> unsuited_effects(const Session& session, const ModelReq
     ModelRequest alone = model;
     alone.effects = {effect};
     try {
-      try_assemble(std::move(alone), session.registry);
+      std::ignore = provisional_model(std::move(alone), session.registry);
     } catch (const InputError&) {
       names.push_back(effect.name);
     }
@@ -142,7 +134,7 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   ModelRequest with = model;
   with.effects.push_back({name, effect, roles, {}});
   try {
-    try_assemble(with, session.registry);
+    std::ignore = provisional_model(with, session.registry);
   } catch (const InputError& error) {
     throw InputError("effect '" + effect + "' does not suit this model: " + error.what());
   }

@@ -51,12 +51,14 @@ void knots_from_tables(const Session& session, ModelRequest& request) {
   }
 }
 
-void curves_from_tables(const Session& session, Model& model) {
-  for (const auto& curve : std::vector<Curve>(model.curves)) {
-    const auto study = session.study.curves.find(curve.name);
-    if (study == session.study.curves.end() || !study->second.table) continue;
-    const Table table = read_csv(*study->second.table);
-    set_curve(model, curve.name, table.values(curve.of, curve.of_unit), table.values(curve.name, curve.unit));
+void curves_from_tables(const Session& session, const ModelRequest& request, Model& model) {
+  const auto names = parameter_names(request, session.registry);
+  for (const auto& [name, study] : session.study.curves) {
+    const auto known = names.find(name);
+    const Curve* curve = known == names.end() ? nullptr : model.find_curve(known->second);
+    if (curve == nullptr || !study.table) continue;
+    const Table table = read_csv(*study.table);
+    set_curve(model, curve->name, table.values(curve->of, curve->of_unit), table.values(name, curve->unit));
   }
 }
 
@@ -76,7 +78,7 @@ Case from_section(Session& session) {
   knots_from_tables(session, request);
   Case out{assemble(request, session.registry), {}, {}};
   check_noise(ask, out.model.system->spec());
-  curves_from_tables(session, out.model);
+  curves_from_tables(session, request, out.model);
   const auto samples = static_cast<std::size_t>(ask.duration / ask.step) + 1;
   out.signals.name = "simulation";
   for (std::size_t i = 0; i < samples; ++i) out.signals.t.push_back(static_cast<double>(i) * ask.step);
