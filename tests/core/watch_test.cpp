@@ -39,7 +39,7 @@ TEST_F(WatchTest, WorkEndsWhenItsTimeIsSpent) {
   try {
     work_for_a_while();
     FAIL() << "went on";
-  } catch (const TimeSpent& spent) {
+  } catch (const TimeLimitReached& spent) {
     EXPECT_STREQ(spent.what(), "the time limit of 0.01 s for filter_error was spent");
     EXPECT_THAT(in_words(spent, "log-likelihood", -12.5), HasSubstr("was spent at a log-likelihood of -12.5: "));
   }
@@ -62,13 +62,13 @@ TEST_F(WatchTest, WhatWasFoundIsWrittenUpUnhurried) {
   const Watch watch("filter_error", 1e-9);
   sleep_for(0.001);
   {
-    const Unhurried writing_up;
+    const SuspendedTimeLimit writing_up;
     EXPECT_NO_THROW(work_for_a_while());
     interrupted() = true;
     EXPECT_THROW(work_for_a_while(), Interrupted) << "an interrupt still holds";
     interrupted() = false;
   }
-  EXPECT_THROW(work_for_a_while(), TimeSpent);
+  EXPECT_THROW(work_for_a_while(), TimeLimitReached);
 }
 
 TEST_F(WatchTest, AnInterruptStopsAtTheNextLook) {
@@ -85,7 +85,7 @@ TEST_F(WatchTest, AThreadThatWorksForAnotherHasItsWatch) {
     const SameWatch same(outer);
     try {
       work_for_a_while();
-    } catch (const TimeSpent&) {
+    } catch (const TimeLimitReached&) {
       stopped = true;
     }
   }).join();

@@ -153,7 +153,7 @@ Discovery example_discovery() {
   d.tried = {"14 effects"};
   d.force = {{"moment", {31.0, 0.8, "N m"}}};
   d.sweep_asks = {"camera_roll"};
-  d.held = {{"k is held at 39"}};
+  d.fixed_parameters = {{"k is held at 39"}};
   d.unexplained_port = "dw/dt";
   d.unexplained_quantity = "w";
   d.unexplained_error = true;
@@ -219,7 +219,7 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   EXPECT_EQ(back.sentences, d.sentences);
   EXPECT_EQ(back.tried, d.tried);
   EXPECT_EQ(back.sweep_asks, d.sweep_asks);
-  EXPECT_EQ(back.held, d.held);
+  EXPECT_EQ(back.fixed_parameters, d.fixed_parameters);
   EXPECT_EQ(back.unexplained_port, "dw/dt");
   EXPECT_EQ(back.unexplained_quantity, "w");
   EXPECT_TRUE(back.unexplained_error);

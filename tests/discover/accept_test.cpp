@@ -12,8 +12,8 @@
 #include <numbers>
 
 #include "misfit/diagnose/features.h"
-#include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
+#include "misfit/discover/lack_of_fit.h"
 #include "misfit/math/statistics.h"
 #include "tests/discover/record.h"
 
@@ -65,7 +65,7 @@ struct World {
     if (!refitted) return e;
     e.refit = refit({estimate, signals, registry()}, *e.screening);
     e.candidate.actual_drop = e.refit->drop;
-    e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
+    e.log_p = log_drop_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
     e.candidate.p_value = sidak(std::min(1.0, std::exp(e.log_p)), families());
     return e;
   }
@@ -321,10 +321,10 @@ TEST(Accept, AnAliasIsNotPreferredToAnEffectThatGainsMore) {
   EXPECT_FALSE(world.accept(ranked).has_value());
   EXPECT_EQ(ranked.front().candidate.effect, "coulomb_friction");
   EXPECT_TRUE(ranked.front().candidate.accepted) << ranked.front().candidate.why;
-  const Candidate& alias = of(ranked, "hysteresis");
-  EXPECT_FALSE(alias.accepted);
-  EXPECT_GT(alias.held_out_gain.value_or(0.0), 0.0) << "not refused, though it gains less";
-  EXPECT_THAT(alias.why, testing::StartsWith("explains less than coulomb_friction"));
+  const Candidate& imitation = of(ranked, "hysteresis");
+  EXPECT_FALSE(imitation.accepted);
+  EXPECT_GT(imitation.held_out_gain.value_or(0.0), 0.0) << "not refused, though it gains less";
+  EXPECT_THAT(imitation.why, testing::StartsWith("explains less than coulomb_friction"));
 }
 
 /// Beside the friction, which alone explains all, hysteresis is not needed: it must not be accepted on the friction's account.
@@ -360,7 +360,7 @@ TEST(Accept, NothingIsChosenPastAnUnknownFormWorthTwiceAsMuch) {
 }
 
 /// The drive is limited in its rate, which no known effect describes, and there is a little friction: that is right, but says nothing of
-/// what is missing. Both are made to read nothing, else the friction, too, would be tested for what the lag leaves and be an alias.
+/// what is missing. Both are made to read nothing, else the friction, too, would be tested for what the lag leaves and be an imitation.
 TEST(Accept, NothingIsChosenPastALargerAliasThatNoSecondEffectExplains) {
   const auto limited = [](double last, double asked) { return last + std::clamp(asked - last, -2.0, 2.0); };
   const World world(record_of_cart({effect("coulomb_friction")}, {{"friction", 0.6}}, 41, limited));

@@ -129,7 +129,7 @@ struct Parent {
 /// from the smaller one's.
 double drop(const Parent& parent, const Model& child) {
   FilterOptions options;
-  options.around = parent.estimate.around;
+  options.reference = parent.estimate.reference;
   options.choose_roughness = false;
   options.use.emplace();
   for (const auto& data : parent.estimate.data) options.use->push_back(data.use);

@@ -360,14 +360,27 @@ TEST(CandidateModels, ARolledCameraIsHardlySeenInTheMotion) {
 }
 
 /// χ² with one degree of freedom above 2.706: 0.1000; of one side half of it.
-TEST(LogScoreTail, OneSidedStrengthsHaveHalfTheChance) {
+TEST(LogDropTail, OneSidedStrengthsHaveHalfTheChance) {
   CandidateModel s;
   s.strengths = {0};
   s.one_sided = {false};
-  EXPECT_NEAR(std::exp(log_score_tail(s, 2.70554)), 0.1, 1e-6);
+  EXPECT_NEAR(std::exp(log_drop_tail(s, 2.70554)), 0.1, 1e-6);
   s.one_sided = {true};
-  EXPECT_NEAR(std::exp(log_score_tail(s, 2.70554)), 0.05, 1e-6);
-  EXPECT_EQ(log_score_tail(s, 0.0), 0.0) << "nothing there: p 1, not a half";
+  EXPECT_NEAR(std::exp(log_drop_tail(s, 2.70554)), 0.05, 1e-6);
+  EXPECT_EQ(log_drop_tail(s, 0.0), 0.0) << "nothing there: p 1, not a half";
+}
+
+/// Two strengths whose columns are one: the score has a single degree of freedom.
+TEST(LogScoreTail, CountsIndependentDirectionsAndNotStrengths) {
+  CandidateModel s;
+  s.strengths = {0, 1};
+  s.one_sided = {false, false};
+  ScoreResult score;
+  score.chi2 = 2.70554;
+  score.dof = 1;
+  EXPECT_NEAR(std::exp(log_score_tail(s, score)), 0.1, 1e-6);
+  score.dof = 2;
+  EXPECT_NEAR(std::exp(log_score_tail(s, score)), std::exp(-0.5 * 2.70554), 1e-6);
 }
 
 /// Sigma 0.11 s of the lag's time.
@@ -383,6 +396,12 @@ TEST(Verdict, AMemoryWhoseTimeIsBelowTwoSigmasIsNotDetermined) {
   EXPECT_FALSE(undetermined_time(model, Eigen::MatrixXd()).has_value()) << "nothing is known of its sigma";
   set(model, "tau", 0.23);
   EXPECT_FALSE(undetermined_time(model, covariance).has_value());
+  Model late = assemble(cart({effect("delay")}), registry());
+  const std::size_t unknowns = late.free_parameters().size();
+  set(late, "delay", 0.16);
+  EXPECT_TRUE(undetermined_time(late, Eigen::MatrixXd::Identity(unknowns, unknowns)).has_value()) << "a delay has no states, and remembers";
+  EXPECT_TRUE(outlasts_recording(late, 0.3).has_value());
+  EXPECT_FALSE(outlasts_recording(late, 0.4).has_value());
   Model forced = assemble(cart({effect("periodic_forcing")}), registry());
   const std::size_t size = forced.free_parameters().size();
   EXPECT_FALSE(undetermined_time(forced, 1e6 * Eigen::MatrixXd::Identity(size, size)).has_value()) << "it remembers nothing";

@@ -78,7 +78,7 @@ TEST(EstimateFilter, AsksForReadingsWhereThereAreNone) {
   for (auto& channel : flight.measured) std::fill(channel.values.begin(), channel.values.end(), std::numeric_limits<double>::quiet_NaN());
   FittedModel start;
   start.model = assemble(request, registry());
-  const FilterError answer = filter_error(start, {flight});
+  const FilterErrorFit answer = filter_error(start, {flight});
   EXPECT_EQ(answer.fit.status, FitStatus::declined);
   EXPECT_THAT(answer.fit.message, testing::HasSubstr("no sample at which the states"));
 }

@@ -20,7 +20,7 @@ struct Known {
     for (Parameter& p : cart.model.model.parameters) p.free = false;
     estimate.model = cart.model.model;
     estimate.forced = cart.model;
-    estimate.noise = estimate.around = cart.noise;
+    estimate.noise = estimate.reference = cart.noise;
     estimate.noise_fit.logs = pack(cart.noise, cart.model.model.system->spec(), cart.noise).value;
     estimate.noise_fit.at_bound.assign(estimate.noise_fit.logs.size(), false);
     estimate.data = {cart.data};
@@ -29,7 +29,7 @@ struct Known {
   }
 
   [[nodiscard]] Eigen::MatrixXd covariance(const std::vector<double>& logs) const {
-    return noise_information({&estimate.forced, &estimate.data, &estimate.traces}, logs, estimate.around, 1).inverse();
+    return noise_information({&estimate.forced, &estimate.data, &estimate.traces}, logs, estimate.reference, 1).inverse();
   }
 
   /// The path in many small steps.

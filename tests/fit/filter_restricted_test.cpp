@@ -23,7 +23,7 @@ struct Offsets {
     FilterEstimate out;
     out.model = cart.model.model;
     out.forced = cart.model;
-    out.noise = out.around = cart.noise;
+    out.noise = out.reference = cart.noise;
     out.noise_fit.logs = logs;
     out.noise_fit.at_bound.assign(logs.size(), false);
     out.data = {cart.data};

@@ -58,7 +58,7 @@ TEST(TryNoise, OfANoiseThatIsNotTakenNothingStays) {
   const std::vector<Signals> experiments{testing_decay::decay(200, 5)};
   LikelihoodAscent ascent(trajectory_start(model, experiments).from.model, {}, experiments, {});
   ASSERT_TRUE(ascent.linearise());
-  NoiseFit worse = fit_noise(ascent.runs(), ascent.out.noise, {ascent.out.around, 1});
+  NoiseFit worse = fit_noise(ascent.runs(), ascent.out.noise, {ascent.out.reference, 1});
   worse.noise.channels.front().white *= 10.0;
   worse.at_bound.flip();
   ASSERT_FALSE(ascent.try_noise(worse));

@@ -164,7 +164,7 @@ class SigmaOfACurve : public testing::Test {
 
 TEST_F(SigmaOfACurve, CountsInOutputError) {
   OutputErrorStart white;
-  white.coloured = false;
+  white.thorough = false;
   const FittedModel without = output_error(equation_error(model_of(experiments), experiments), experiments, white);
   ASSERT_EQ(without.fit.status, FitStatus::converged) << without.fit.message;
   mean = damping_of(without.model).mean();

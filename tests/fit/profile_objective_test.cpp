@@ -69,7 +69,7 @@ FittedMethod filtered(const testing_cart::Cart& cart, FilterEstimate& estimate, 
   if (!noise.empty()) start.known_noise = noise;
   start.parameters[static_cast<std::size_t>(start.find_parameter("stiffness"))].free = true;
   estimate = estimate_filter(start, curve_penalties(start), {cart.signals});
-  FittedMethod out{"filter_error", {{}, estimate.model, estimate.penalties, {}}, estimate.noise, estimate.around, {}};
+  FittedMethod out{"filter_error", {{}, estimate.model, estimate.penalties, {}}, estimate.noise, estimate.reference, {}};
   out.use.emplace();
   for (const auto& data : estimate.data) out.use->push_back(data.use);
   return out;

@@ -55,7 +55,7 @@ Signals record(double memory) {
   return s;
 }
 
-FilterError fitted(double memory) {
+FilterErrorFit fitted(double memory) {
   const auto registry = registry_with(oscillator_text);
   const Model model = assemble(request_of("text"), *registry);
   static std::vector<Signals> experiments;  // an estimate points to its recording
@@ -66,7 +66,7 @@ FilterError fitted(double memory) {
 }
 
 TEST(SlowForce, IsSaidWithTimePeriodAndStrength) {
-  const FilterError found = fitted(4.0);
+  const FilterErrorFit found = fitted(4.0);
   ASSERT_TRUE(found.estimate) << found.fit.message;
   EXPECT_GT(found.estimate->noise.force_time, 1.5) << "4 s put in";
   const double period = shortest_period(*found.estimate);
@@ -79,15 +79,15 @@ TEST(SlowForce, IsSaidWithTimePeriodAndStrength) {
 
 /// The noise as the search leaves it no longer knows what the study holds.
 TEST(SlowForce, NothingIsSaidOfOneWhoseTimeTheStudyHolds) {
-  FilterError found = fitted(4.0);
+  FilterErrorFit found = fitted(4.0);
   ASSERT_TRUE(found.estimate) << found.fit.message;
   ASSERT_NE(warning_of_slow_force(*found.estimate), "");
-  found.estimate->around.time_held = true;
+  found.estimate->reference.time_is_given = true;
   EXPECT_EQ(warning_of_slow_force(*found.estimate), "");
 }
 
 TEST(SlowForce, NothingIsSaidOfAFastOne) {
-  const FilterError found = fitted(0.05);
+  const FilterErrorFit found = fitted(0.05);
   ASSERT_TRUE(found.estimate) << found.fit.message;
   EXPECT_TRUE(found.fit.driven);
   EXPECT_NEAR(shortest_period(*found.estimate), 2.0 * M_PI / std::sqrt(stiffness), 0.1);

@@ -35,7 +35,7 @@ class CutOff {
  private:
   void hear(const SearchState& state) {
     value_ = state.value;
-    if (++heard_ >= iterations_) throw TimeSpent(limit_of_20_s);
+    if (++heard_ >= iterations_) throw TimeLimitReached(limit_of_20_s);
   }
 
   int iterations_, heard_ = 0;
@@ -49,7 +49,7 @@ struct Flight {
   Model model;
   explicit Flight(double seconds)
       : signals{testing_flight::fly(seconds, 3)}, model(assemble(testing_flight::request_for(signals), testing_flight::registry())) {}
-  [[nodiscard]] FilterError fit() const {
+  [[nodiscard]] FilterErrorFit fit() const {
     FilterOptions options;
     options.threads = 1;
     return filter_error(std::vector<FilterStart>{{model, curve_penalties(model)}}, signals, options);
@@ -58,12 +58,12 @@ struct Flight {
 
 TEST(TimeLimit, FilterErrorEndsWithItsBestPoint) {
   const Flight flight(8.0);
-  const FilterError whole = flight.fit();
+  const FilterErrorFit whole = flight.fit();
   ASSERT_EQ(whole.fit.status, FitStatus::converged) << whole.fit.message;
   double before = -std::numeric_limits<double>::infinity();
   for (const int iterations : {1, 4}) {
     std::optional<CutOff> cut(std::in_place, iterations);
-    const FilterError fit = flight.fit();
+    const FilterErrorFit fit = flight.fit();
     EXPECT_EQ(cut->heard(), iterations) << "it went on";
     const double heard = cut->value();
     cut.reset();
@@ -84,7 +84,7 @@ TEST(TimeLimit, FilterErrorEndsWithItsBestPoint) {
 TEST(TimeLimit, AFilterThatWasNeverRunFails) {
   const Flight flight(8.0);
   const CutOff cut(0);
-  const FilterError fit = flight.fit();
+  const FilterErrorFit fit = flight.fit();
   EXPECT_FALSE(fit.estimate);
   EXPECT_EQ(fit.fit.status, FitStatus::failed);
   EXPECT_THAT(fit.fit.message, HasSubstr("before there was any result"));

@@ -201,7 +201,7 @@ template <class Stop>
 LeastSquares::Evaluate stopped_at(int last, int& calls) {
   return [evaluate = exponential(exponential_data(2.0, -1.5, 20)), last, &calls](const double* const* p, double* r, double** J) {
     if (++calls >= last) {
-      if constexpr (std::is_same_v<Stop, TimeSpent>) throw TimeSpent("the time limit of 1 s for this was spent");
+      if constexpr (std::is_same_v<Stop, TimeLimitReached>) throw TimeLimitReached("the time limit of 1 s for this was spent");
       throw Interrupted();
     }
     return evaluate(p, r, J);
@@ -214,7 +214,7 @@ TEST(LeastSquares, EndsWithTheBestPointWhenItsTimeIsSpent) {
     int calls = 0;
     LeastSquares problem;
     const int block = problem.add_block({1.0, 0.0});
-    problem.add_residuals({block}, 20, stopped_at<TimeSpent>(last, calls));
+    problem.add_residuals({block}, 20, stopped_at<TimeLimitReached>(last, calls));
     const auto summary = problem.solve({});
     EXPECT_TRUE(summary.out_of_time);
     EXPECT_TRUE(summary.usable);
@@ -235,7 +235,7 @@ TEST(LeastSquares, TimeSpentAtTheStartLeavesTheStart) {
   int calls = 0;
   LeastSquares problem;
   const int block = problem.add_block({1.0, 0.0});
-  problem.add_residuals({block}, 20, stopped_at<TimeSpent>(1, calls));
+  problem.add_residuals({block}, 20, stopped_at<TimeLimitReached>(1, calls));
   const auto summary = problem.solve({});
   EXPECT_TRUE(summary.out_of_time);
   EXPECT_FALSE(summary.usable);

@@ -460,11 +460,11 @@ TEST(DeclaredSystems, InitialStatesAreFreeSharedOrFixedAndAStudyMayChangeThat) {
 TEST(DeclaredSystems, MeasurementNoiseOfOutputsIsWhatTheStudyKnows) {
   const auto known = registry_with(duffing_text);
   ModelRequest request = request_of("text");
-  EXPECT_FALSE(assemble(request, *known).noise_held());
+  EXPECT_FALSE(assemble(request, *known).noise_is_given());
   const std::string output = known->system("text").make({})->spec().outputs.front().name;
   request.noise[output] = {0.3, true, {}};
   const Model model = assemble(request, *known);
-  EXPECT_TRUE(model.noise_held());
+  EXPECT_TRUE(model.noise_is_given());
   EXPECT_EQ(model.known_noise.front().sigma, 0.3);
   request.noise["nothing"] = {0.3, true, {}};
   EXPECT_THROW(static_cast<void>(assemble(request, *known)), InputError);

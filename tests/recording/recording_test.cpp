@@ -73,9 +73,9 @@ TEST(Recording, AMeasurementThatStandsBetweenStepsOfItsLastDigitIsAnOutput) {
     const double boiler = 20.0 + 10.0 * (1.0 - std::exp(-k / 200.0)), room = 20.0 + 0.3 * std::sin(0.01 * k) + 0.03 * normal(random);
     return fmt::format("{},{:.1f},{:.1f},{},{}", k, boiler, room, k / 50 % 2, 5 * (k / 30));  // p: a staircase, 0 % to 95 %
   }));
-  EXPECT_GT(column(s, "T_boiler").held, 0.5);
+  EXPECT_GT(column(s, "T_boiler").repeat_share, 0.5);
   EXPECT_EQ(column(s, "T_boiler").use, ColumnUse::output);
-  EXPECT_GT(column(s, "T_room").held, 0.5);
+  EXPECT_GT(column(s, "T_room").repeat_share, 0.5);
   EXPECT_EQ(column(s, "T_room").use, ColumnUse::output);
   EXPECT_EQ(column(s, "on").use, ColumnUse::input);
   EXPECT_EQ(column(s, "p").use, ColumnUse::input);

@@ -346,7 +346,7 @@ TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) 
 TEST(Verdict, SaysWhichHeldParameterExplainsAsMuch) {
   Case c;
   c.discovery = searched({}, SearchOutcome::none_missing, "nothing");
-  c.discovery->held = {{"k is held at 39 1/s^2, and these data want 40 1/s^2: free it", "m is held"}};
+  c.discovery->fixed_parameters = {{"k is held at 39 1/s^2, and these data want 40 1/s^2: free it", "m is held"}};
   EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("No effect is found missing"),
                                           testing::EndsWith(" But k is held at 39 1/s^2, and these data want 40 1/s^2: free it.")));
 }

@@ -17,7 +17,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 ProfileRequest request(double best, double sigma, double plain_sigma, const std::function<std::optional<double>(double)>& objective) {
   ProfileRequest r{"output_error", "k", "-", best, objective(best).value_or(0.0), sigma, plain_sigma, -infinite, infinite, {}};
-  r.from_best = [objective] { return HeldMaximum(objective); };
+  r.from_best = [objective] { return MaximumAtFixedValue(objective); };
   return r;
 }
 
@@ -148,7 +148,7 @@ TEST(Profile, OnDiskEachSideIsKeptToTheBit) {
   for (auto& r : requests) {
     r.from_best = [&calls, poisson] {
       ++calls;
-      return HeldMaximum(poisson);
+      return MaximumAtFixedValue(poisson);
     };
   }
   const TemporaryFolder folder;

@@ -39,7 +39,7 @@ TEST(AKnownModel, LacksNothingWhereItIsRight) {
   Identification identification = study.identification("filter_error", "");
   const Discovery found = identification.discover();
   EXPECT_FALSE(identification.accepted(found));
-  EXPECT_FALSE(found.held);
+  EXPECT_FALSE(found.fixed_parameters);
 }
 
 /// No effect of the library is a stiffness alone, which a user would free in the system: what is found is one that has a stiffness.
@@ -52,9 +52,9 @@ TEST(AKnownModel, LacksAForceInProportionWhereItsStiffnessIsTooLow) {
   ASSERT_EQ(first.effect, "dead_zone") << found.verdict;
   EXPECT_NEAR(first.parameters.at("stop_stiffness").value, 1.0, 4.0 * first.parameters.at("stop_stiffness").sigma);
   EXPECT_LT(first.parameters.at("half_width").value, 0.02) << "a dead zone of no width";
-  ASSERT_TRUE(found.held) << "what a user would free";
-  ASSERT_EQ(found.held->size(), 1U);
-  EXPECT_THAT(found.held->front(), AllOf(HasSubstr("k is held at 39 1/s^2, and these data want 39.99"), HasSubstr("(drop 39")));
+  ASSERT_TRUE(found.fixed_parameters) << "what a user would free";
+  ASSERT_EQ(found.fixed_parameters->size(), 1U);
+  EXPECT_THAT(found.fixed_parameters->front(), AllOf(HasSubstr("k is held at 39 1/s^2, and these data want 39.99"), HasSubstr("(drop 39")));
 }
 
 /// A random force that is hardly there has no correlation time: its logarithm is held, and the sigma of what is held is none.

@@ -107,7 +107,7 @@ TEST(StudyOfARung, HoldsAParameterWhereTheStudyWritesIt) {
   Candidate bias;
   bias.effect = "bias";
   bias.roles = {{"output", "theta"}};
-  bias.held["input_tau"] = {0.2, 0.0, "s"};
+  bias.fixed_in_model["input_tau"] = {0.2, 0.0, "s"};
   for (const char* name : {"\"late.input_tau\"", "late.input_tau", "input_tau"}) {
     const TextStudy text(pendulum, recording());
     Identification identification = text.identification(

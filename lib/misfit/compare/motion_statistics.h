@@ -44,9 +44,9 @@ using MotionNumbers = std::vector<std::vector<double>>;
 using MotionDistances = std::vector<std::vector<double>>;
 
 /// The measured path against simulated ones: bands, and p-values by rank [MC]: the share of motions at least as far from the others as the
-/// measured one. With n runs p is at least 1/(n + 1). The parameters are held at their estimates: the band does not hold their uncertainty.
-/// Numbers that the measured path does not give are in no distance, a group without any is left out. The distances of its groups are added
-/// to `distances`. The name of the experiment is left to the caller.
+/// measured one. With n runs p is at least 1/(n + 1). The parameters are fixed at their estimates: the band does not hold their
+/// uncertainty. Numbers that the measured path does not give are in no distance, a group without any is left out. The distances of its
+/// groups are added to `distances`. The name of the experiment is left to the caller.
 [[nodiscard]] MotionSeries compare_motion(const MotionPath& measured, const MotionScales& scales,
                                           const std::vector<MotionNumbers>& simulated, MotionDistances& distances);
 

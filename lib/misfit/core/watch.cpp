@@ -26,12 +26,12 @@ constexpr const char* more_time = "more time: --time-limit SECONDS, or time_limi
 
 }  // namespace
 
-std::string in_words(const TimeSpent& spent, const std::string& what, double value) {
+std::string in_words(const TimeLimitReached& spent, const std::string& what, double value) {
   return fmt::format("{} at a {} of {:.6g}: the values are the best found until then and not where the search would have ended ({})",
                      spent.what(), what, value, more_time);
 }
 
-std::string in_words(const TimeSpent& spent) { return fmt::format("{}, before there was any result ({})", spent.what(), more_time); }
+std::string in_words(const TimeLimitReached& spent) { return fmt::format("{}, before there was any result ({})", spent.what(), more_time); }
 
 Watch::Watch(std::string work, double limit, ProgressCallback on_progress)
     : work_(std::move(work)), limit_(limit), on_progress_(std::move(on_progress)), outer_(watching) {
@@ -59,25 +59,25 @@ SameWatch::SameWatch(const Watch* watch) : before_(std::exchange(watching, watch
 
 SameWatch::~SameWatch() { watching = before_; }
 
-Unhurried::Unhurried() {
+SuspendedTimeLimit::SuspendedTimeLimit() {
   if (watching == nullptr) return;
   watch_.emplace(watching->work_);
   watch_->first_ = nullptr;
 }
 
-Unhurried::~Unhurried() = default;
+SuspendedTimeLimit::~SuspendedTimeLimit() = default;
 
 void look_at_watch() {
   constexpr unsigned between_clocks = 32;
   if (flag.load(std::memory_order_relaxed)) throw Interrupted();
   if (watching == nullptr || ++looks % between_clocks != 0) return;
-  if (watching->spent()) throw TimeSpent(watching->words());
+  if (watching->spent()) throw TimeLimitReached(watching->words());
 }
 
 void report_iteration(int iteration, const char* what, double value) {
   if (flag.load(std::memory_order_relaxed)) throw Interrupted();
   if (watching == nullptr) return;
-  if (watching->spent()) throw TimeSpent(watching->words());
+  if (watching->spent()) throw TimeLimitReached(watching->words());
   if (!watching->on_progress_) return;
   const auto seconds = [](auto from, auto to) { return std::chrono::duration<double>(to - from).count(); };
   const auto now = Watch::Clock::now();

@@ -25,15 +25,15 @@ class Interrupted : public Stopped {
 };
 
 /// A limit of time is spent: what() says which, as "the time limit of 20 s for filter_error was spent".
-class TimeSpent : public Stopped {
+class TimeLimitReached : public Stopped {
  public:
   using Stopped::Stopped;
 };
 
 /// What a fit says that has ended so: `what` is "log-likelihood", `value` where it was.
-[[nodiscard]] std::string in_words(const TimeSpent& spent, const std::string& what, double value);
+[[nodiscard]] std::string in_words(const TimeLimitReached& spent, const std::string& what, double value);
 /// The same where there was nothing yet: "…, before there was any result".
-[[nodiscard]] std::string in_words(const TimeSpent& spent);
+[[nodiscard]] std::string in_words(const TimeLimitReached& spent);
 
 /// How far a search has come.
 struct SearchState {
@@ -69,7 +69,7 @@ class Watch {
 
  private:
   friend class SameWatch;
-  friend class Unhurried;
+  friend class SuspendedTimeLimit;
   friend void report_iteration(int iteration, const char* what, double value);
   using Clock = std::chrono::steady_clock;
 
@@ -95,18 +95,19 @@ class SameWatch {
 };
 
 /// As long as it lives no limit of time holds in this thread: for writing up what was found until then. An interrupt still does.
-class Unhurried {
+class SuspendedTimeLimit {
  public:
-  Unhurried();
-  ~Unhurried();
-  Unhurried(const Unhurried&) = delete;
-  Unhurried& operator=(const Unhurried&) = delete;
+  SuspendedTimeLimit();
+  ~SuspendedTimeLimit();
+  SuspendedTimeLimit(const SuspendedTimeLimit&) = delete;
+  SuspendedTimeLimit& operator=(const SuspendedTimeLimit&) = delete;
 
  private:
   std::optional<Watch> watch_;
 };
 
-/// In every loop over samples or steps: throws Interrupted, TimeSpent. Costs a few nanoseconds; the clock is read at every 32nd call.
+/// In every loop over samples or steps: throws Interrupted, TimeLimitReached. Costs a few nanoseconds; the clock is read at every 32nd
+/// call.
 void look_at_watch();
 /// An iteration of a search has ended: reported to whoever listens; ends the search as look_at_watch() does.
 void report_iteration(int iteration, const char* what, double value);

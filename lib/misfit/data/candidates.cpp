@@ -46,8 +46,8 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json.if_there("also", c.also);
   json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters),
       json("family", NameOf(c.family, candidate_family_names));
-  json("roles", c.roles), json("dof", c.dof), json("described", c.described), json("force", c.force);
-  json("held", c.held), json("free", c.free), json("fixed", c.fixed);
+  json("roles", c.roles), json("dof", c.dof), json("described", c.absorbed), json("force", c.force);
+  json("held", c.fixed_in_model), json("free", c.free), json("fixed", c.fixed);
   json("refit_values", c.refit_values), json("refit_log_noise", c.refit_log_noise);
 }
 
@@ -72,7 +72,7 @@ void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
   json("outcome", NameOf(d.outcome, search_outcome_names));
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
-  json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("held", d.held),
+  json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("held", d.fixed_parameters),
       json("sweep_asks", d.sweep_asks), json("added_force", stored.added);
   json("seconds", d.seconds);
 }

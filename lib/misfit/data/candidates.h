@@ -39,13 +39,13 @@ struct Candidate {
   std::optional<std::string> also;      ///< other values that explain hardly less, in words
   double p_value = 1.0;                 ///< corrected for cells scanned and families
   std::vector<std::string> group;       ///< effects that these data cannot distinguish from this one, itself included; empty: alone
-  bool described = false;               ///< the model already has a column like it (1 − R² < 0.01)
+  bool absorbed = false;                ///< by the free parameters (1 − R² < 0.01), and not clearly significant: not tested
   bool accepted = false;
   std::string why;                             ///< of being accepted or not, in words
   std::map<std::string, Estimate> parameters;  ///< at the refit, else one Gauss–Newton step
-  /// Parameters of the model that it can take over, and their values: held when it is added, since both could not be estimated.
-  std::map<std::string, Estimate> held;
-  std::vector<std::string> free, fixed;   ///< its coefficients that the refit estimated or held unlike the effect says itself
+  /// Parameters of the model that it can take over, and their values: fixed when it is added, since both could not be estimated.
+  std::map<std::string, Estimate> fixed_in_model;
+  std::vector<std::string> free, fixed;   ///< its coefficients that the refit estimated or fixed unlike the effect says itself
   std::map<std::string, Estimate> force;  ///< random force per port after refitting
   /// Where the refit ended, for whoever begins there: all parameters of the model with the effect in their order [SI], and logarithms of
   /// the noise (NoiseVector). Empty: not refitted.
@@ -103,7 +103,7 @@ struct Discovery {
   bool unexplained_error = false;  ///< not a force: an error of the output unexplained_port
   /// Numbers of the system that the study holds and that, freed, would explain about as much as the best effect does, in words: the most
   /// significant first; missing: none.
-  std::optional<std::vector<std::string>> held;
+  std::optional<std::vector<std::string>> fixed_parameters;
   std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have
   double seconds = 0.0;
 };

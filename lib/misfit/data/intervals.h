@@ -37,12 +37,12 @@ struct Bootstrap {
   std::vector<BootstrapCurve> curves;
 };
 
-/// A likelihood with one parameter held and everything else estimated again. SI.
+/// A likelihood with one parameter fixed and everything else estimated again. SI.
 struct LikelihoodProfile {
   std::string method, parameter, unit;
   double best = 0.0, sigma = 0.0, plain_sigma = 0.0;  ///< of the fit
   double scale = 1.0;                                 ///< of the drop: (sigma/plain_sigma)², 1 for white residuals
-  std::vector<double> value, drop;                    ///< rising values; drop: 2 (log L at best − log L with the value held)
+  std::vector<double> value, drop;                    ///< rising values; drop: 2 (log L at best − log L with the value fixed)
   double lower = 0.0, upper = 0.0;                    ///< where the drop is 3.84 × scale: the 95 % interval
   bool lower_found = false, upper_found = false;      ///< false: not reached, `lower` or `upper` is where the search ended
   std::vector<std::string> words;                     ///< what a reader must know

@@ -197,7 +197,7 @@ struct Study {
   std::map<std::string, ParameterStudy> parameters;
   std::map<std::string, InitialStudy> initial;
   std::map<std::string, NoiseStudy> noise;
-  std::optional<double> force_time;              ///< [force] correlation_time [s], held; 0: white
+  std::optional<double> force_time;              ///< [force] correlation_time [s], fixed; 0: white
   std::optional<config::Number> force_strength;  ///< [force] strength: its prior, with sigma
   std::map<std::string, CurveStudy> curves;
   std::map<std::string, std::filesystem::path> reference;  ///< curve → file

@@ -21,7 +21,7 @@ enum class OddPaths { refuse, replace };
 /// What the line of an effect says of its parameters.
 struct EffectStart {
   std::map<std::string, double> values = {};       ///< to start from [SI]
-  std::vector<std::string> free = {}, fixed = {};  ///< estimated, or held, unlike the effect says itself
+  std::vector<std::string> free = {}, fixed = {};  ///< estimated, or fixed, unlike the effect says itself
 };
 /// The line of [effects] for an effect: "bearing = { kind = \"coulomb_friction\", rate = \"omega\" }".
 [[nodiscard]] std::string effect_line(const std::string& name, const std::string& kind, const std::map<std::string, std::string>& roles,

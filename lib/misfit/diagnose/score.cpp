@@ -198,7 +198,7 @@ struct SamplePlace {
   Eigen::Index of_all = 0;
 };
 
-/// Response of the whitened residuals to m disturbances, the gains held: `to_output(place, output, v)` adds them to the prediction of an
+/// Response of the whitened residuals to m disturbances, the gains fixed: `to_output(place, output, v)` adds them to the prediction of an
 /// output, `to_states(place, s)` to the states at the end of the step that follows a sample.
 template <class ToOutput, class ToStates>
 Eigen::MatrixXd response(const FilterEstimate& estimate, Eigen::Index m, const ToOutput& to_output, const ToStates& to_states) {

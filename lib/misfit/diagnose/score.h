@@ -61,7 +61,7 @@ class ForceSensitivity {
   [[nodiscard]] Eigen::MatrixXd own_rate_columns(int own_state, const Eigen::MatrixXd& f) const;
   /// Rates of the effects' own states, the mean of the step that follows each sample, all experiments one after the other.
   [[nodiscard]] const RowMatrix& own_rates() const { return own_rates_; }
-  /// ∂ log-likelihood/∂(force on `port` over the step from each sample), gains held: scans of many functions need only this (all samples).
+  /// ∂ log-likelihood/∂(force on `port` over the step from each sample), gains fixed: scans of many functions need only this (all samples).
   [[nodiscard]] Eigen::VectorXd score_of_steps(int port) const;
 
  private:

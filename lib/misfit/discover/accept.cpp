@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "misfit/core/text.h"
-#include "misfit/discover/alias.h"
 #include "misfit/discover/conditional.h"
 #include "misfit/discover/drift.h"
+#include "misfit/discover/lack_of_fit.h"
 #include "misfit/discover/pairs.h"
 #include "misfit/discover/unknown_form.h"
 #include "misfit/discover/verdict.h"
@@ -46,16 +46,17 @@ std::string not_significant(const RankedCandidate& e, const SearchContext& conte
          format_value(promised) + ", which is no evidence against it";
 }
 
-/// Step 1: the reason why it cannot be accepted; empty if there is none.
-std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
+/// Step 4: the reason why it cannot be accepted; empty if there is none. Notes in `e` whether its refit is degenerate, its held-out gain
+/// (which may take two fits), and whether that alone speaks against it.
+std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
   Candidate& c = e.candidate;
   e.alone_gains_nothing = false;
   if (!(c.p_value < context.options.p_accept)) return not_significant(e, context);
   if (!near_a_maximum(*e.refit)) return "its refit has not converged: " + e.refit->estimate.message;
   const auto memory = outlasts_recording(e.refit->estimate.model, longest_recording(context.experiments));
-  const auto uneven = off_whole_steps(e.refit->estimate.model, context.experiments);
+  const auto off_steps = off_whole_steps(e.refit->estimate.model, context.experiments);
   const auto no_edge = edge_not_visited(e.refit->estimate);
-  e.degenerate = memory || uneven || no_edge || !e.refit->partial.empty();
+  e.degenerate = memory || off_steps || no_edge || !e.refit->partial.empty();
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   if (const auto unknown =
@@ -64,7 +65,7 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
   if (const auto time = undetermined_time(e.refit->estimate.model, e.refit->estimate.covariance)) return *time;
   if (const auto collinear = no_longer_determined(e.refit->estimate, context.estimate)) return *collinear;
   if (memory) return *memory;
-  if (uneven) return *uneven;
+  if (off_steps) return *off_steps;
   if (no_edge) return *no_edge;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
   e.alone_gains_nothing = !(*c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit)));
@@ -74,7 +75,7 @@ std::string refusal(RankedCandidate& e, HeldOut& held_out, const SearchContext& 
          format_value(least_held_out_gain(estimated_parameters(*e.refit))) + " asked of so many parameters";
 }
 
-/// Step 7: groups the best candidate with those that these data cannot distinguish from it.
+/// Step 8: groups the best candidate with those that these data cannot distinguish from it.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -96,7 +97,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
 /// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
 double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
 
-/// What decided between one that is not refused and the accepted one (steps 2 and 5).
+/// What decided between one that is not refused and the accepted one (steps 5 and 7).
 std::string why_not_before(const RankedCandidate& other, const RankedCandidate& best) {
   const std::string than = label(best.candidate);
   if (!(other.refit->drop > best.refit->drop)) return "explains less than " + than;
@@ -107,7 +108,7 @@ std::string why_not_before(const RankedCandidate& other, const RankedCandidate& 
               : ", which comes first: what a sensor does can stand for much of what the plant does");
 }
 
-/// Step 8: reasons for those that were refitted and are not accepted, the accepted one in front.
+/// After step 8: reasons for those that were refitted and are not accepted, the accepted one in front.
 void explain_others(std::vector<RankedCandidate>& ranked) {
   const Candidate& best = ranked.front().candidate;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
@@ -121,9 +122,9 @@ void explain_others(std::vector<RankedCandidate>& ranked) {
 
 using Place = std::vector<RankedCandidate>::iterator;
 
-/// A candidate that step 1 does not refuse but with which a curve of a quantity that it reads is still significant: it may only imitate the
+/// A candidate that step 4 does not refuse but with which a curve of a quantity that it reads is still significant: it may only imitate the
 /// missing effect.
-struct Alias {
+struct Imitation {
   Place at;
   UnknownCurve remaining;
 };
@@ -138,15 +139,15 @@ struct Choice {
 /// plant does.
 bool is_sensor_distortion(const RankedCandidate& e) {
   const CandidateModel& candidate_model = *e.screening->candidate_model;
-  const bool memory = !candidate_model.model.effects.back().effect->spec().states.empty();
+  const bool memory = has_memory(candidate_model.model.effects.back().effect->spec());
   return candidate_model.family == CandidateFamily::sensor && !candidate_model.has_priors && (memory || !candidate_model.shapes.empty());
 }
 
-/// Step 1, and the order of step 2.
+/// Step 4, and the order of step 5.
 std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, HeldOut& held_out, const SearchContext& context) {
   std::vector<Place> out;
   for (auto e = ranked.begin(); e != ranked.end() && e->refit; ++e) {
-    e->candidate.why = refusal(*e, held_out, context);
+    e->candidate.why = judge(*e, held_out, context);
     if (e->candidate.why.empty()) out.push_back(e);
   }
   std::stable_sort(out.begin(), out.end(), [](Place a, Place b) { return gain_of(*a) > gain_of(*b); });
@@ -159,10 +160,10 @@ std::vector<Place> not_refused(std::vector<RankedCandidate>& ranked, HeldOut& he
   return out;
 }
 
-/// Step 2: the first without lack of fit. Those before it are aliases.
-Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Alias>& aliases, HeldOut& held_out,
+/// Step 5: the first without lack of fit. Those before it are imitations.
+Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vector<Imitation>& imitations, HeldOut& held_out,
                                  const SearchContext& context) {
-  std::vector<int> read;  // by the aliases
+  std::vector<int> read;  // by the imitations
   for (const Place e : not_refused(ranked, held_out, context)) {
     const CandidateModel& candidate_model = *e->screening->candidate_model;
     auto left = remaining_lack_of_fit(e->refit->estimate, with_quantities(candidate_model, read), {e->refit->drop}, context.options);
@@ -170,25 +171,25 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
     if (!left) return {e};
     e->candidate.why = "lack of fit remains: with it in the model " + left->label() + " is still significant, " + p_equals(left->p_value) +
                        ", worth " + format_value(left->result.chi2) + " beside its drop of " + format_value(e->refit->drop);
-    aliases.push_back({e, *left});
+    imitations.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }
   return {ranked.end()};
 }
 
-/// Step 3: a choice is not made past one that explains more than twice as much. Such an alias is chosen in its place if a second effect
+/// Step 5: a choice is not made past one that explains more than twice as much. Such an imitation is chosen in its place if a second effect
 /// explains what it leaves; for others, one that is refused, and an unknown form, nothing is.
-Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Alias>& aliases,
+Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Imitation>& imitations,
                              const std::vector<UnknownCurve>& unknown, HeldOut& held_out, const SearchContext& context) {
   const double least = 2.0 * choice.at->refit->drop;
   const auto past = [&](const std::string& larger, const char* which) -> Choice {
     choice.at->candidate.why = "explains less than half of what " + larger + " does, and " + which;
     return {ranked.end()};
   };
-  for (const Alias& alias : aliases) {
-    if (!(alias.at->refit->drop > least)) continue;
-    if (const auto pair = explaining_effect(*alias.at, ranked, held_out, context)) return {alias.at, pair};
-    return past(label(alias.at->candidate), "that leaves a lack of fit which no second effect removes");
+  for (const Imitation& imitation : imitations) {
+    if (!(imitation.at->refit->drop > least)) continue;
+    if (const auto pair = explaining_effect(*imitation.at, ranked, held_out, context)) return {imitation.at, pair};
+    return past(label(imitation.at->candidate), "that leaves a lack of fit which no second effect removes");
   }
   // A degenerate refit is no effect, but so much that something else explains is still missing beside the choice.
   for (auto e = ranked.begin(); e != ranked.end(); ++e) {
@@ -205,20 +206,20 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
   return choice;
 }
 
-/// Step 5: the first of a pair that explains clearly more, in place of the choice.
+/// Step 7: the first of a pair that explains clearly more, in place of the choice.
 Choice or_a_better_pair(std::vector<RankedCandidate>& ranked, const Choice& choice, HeldOut& held_out, const SearchContext& context) {
   if (choice.pair) return choice;
   const auto instead = better_pair(ranked, *choice.at, held_out, context);
   return instead ? Choice{ranked.begin() + (instead->first - ranked.data()), instead->pair} : choice;
 }
 
-/// Step 4: the first alias whose lack of fit a second effect removes; else the first that gains nothing by itself on what is held out, but
-/// does together with another.
-Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases, HeldOut& held_out,
+/// Step 6: the first imitation whose lack of fit a second effect removes; else the first that gains nothing by itself on what is held out,
+/// but does together with another.
+Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Imitation>& imitations, HeldOut& held_out,
                                   const SearchContext& context) {
   constexpr int most = 3;
-  for (const Alias& alias : aliases) {
-    if (const auto pair = explaining_effect(*alias.at, ranked, held_out, context)) return {alias.at, pair};
+  for (const Imitation& imitation : imitations) {
+    if (const auto pair = explaining_effect(*imitation.at, ranked, held_out, context)) return {imitation.at, pair};
   }
   int tried = 0;
   for (auto e = ranked.begin(); e != ranked.end() && e->refit && tried < most; ++e) {
@@ -229,7 +230,7 @@ Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const st
   return {ranked.end()};
 }
 
-/// Step 6: marks the choice as accepted, says why, and makes it the first of the list.
+/// Marks the choice as accepted, says why, and makes it the first of the list.
 void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;
@@ -241,13 +242,13 @@ void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   std::rotate(ranked.begin(), choice.at, choice.at + 1);
 }
 
-/// The curve that remains with the first alias, else with the best candidate if that is significant but was refused. An alias beside which
-/// the best explains more than twice as much says nothing.
-std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidate>& ranked, const std::vector<Alias>& aliases,
+/// The curve that remains with the first imitation, else with the best candidate if that is significant but was refused. An imitation
+/// beside which the best explains more than twice as much says nothing.
+std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidate>& ranked, const std::vector<Imitation>& imitations,
                                                 const SearchContext& context) {
   const bool refused = !ranked.empty() && ranked.front().refit && ranked.front().candidate.p_value < context.options.p_accept;
   const double best_drop = refused && !ranked.front().degenerate ? ranked.front().refit->drop : 0.0;
-  if (!aliases.empty() && !(best_drop > 2.0 * aliases.front().at->refit->drop)) return aliases.front().remaining;
+  if (!imitations.empty() && !(best_drop > 2.0 * imitations.front().at->refit->drop)) return imitations.front().remaining;
   if (!refused) return std::nullopt;
   const RankedCandidate& best = ranked.front();
   const bool periodic = best.screening->candidate_model->frequency >= 0;  // what it leaves is rather a frequency that changes
@@ -276,18 +277,18 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
 
 std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                        const SearchContext& context) {
-  std::vector<Alias> aliases;
+  std::vector<Imitation> imitations;
   HeldOut held_out(context.estimate, context.experiments, context.options.threads);
-  Choice choice = first_without_lack_of_fit(ranked, aliases, held_out, context);                                   // 1, 2
-  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, aliases, unknown, held_out, context)  // 3
-                                     : first_with_a_second_effect(ranked, aliases, held_out, context);             // 4
-  if (choice.at != ranked.end()) choice = or_a_better_pair(ranked, choice, held_out, context);                     // 5
+  Choice choice = first_without_lack_of_fit(ranked, imitations, held_out, context);
+  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, imitations, unknown, held_out, context)
+                                     : first_with_a_second_effect(ranked, imitations, held_out, context);
+  if (choice.at != ranked.end()) choice = or_a_better_pair(ranked, choice, held_out, context);
   const bool accepted = choice.at != ranked.end();
-  if (accepted) move_to_front(ranked, choice);  // 6
-  find_groups(ranked, context);                 // 7
-  if (accepted) explain_others(ranked);         // 8
+  if (accepted) move_to_front(ranked, choice);
+  find_groups(ranked, context);
+  if (accepted) explain_others(ranked);
   if (accepted) return std::nullopt;
-  return unexplained_force(ranked, remaining_with_best(ranked, aliases, context), unknown, context);  // 9
+  return unexplained_force(ranked, remaining_with_best(ranked, imitations, context), unknown, context);
 }
 
 }  // namespace misfit

@@ -27,7 +27,7 @@ Candidate named_candidate(const ScreeningResult& s, double families) {
   c.p_value = sidak(s.p_value, families);
   // Of a very significant effect even the 1 % that the free parameters cannot describe is seen in the data: it is tested.
   const bool could_be_imitated = s.result.independent < rounding || !(c.p_value < clearly_significant);
-  c.described = s.result.independent < described_below && could_be_imitated && !candidate_model.has_priors;
+  c.absorbed = s.result.independent < described_below && could_be_imitated && !candidate_model.has_priors;
   for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
     const Parameter& p = candidate_model.model.parameters[candidate_model.strengths[i]];
     const Eigen::Index k = i;
@@ -38,7 +38,7 @@ Candidate named_candidate(const ScreeningResult& s, double families) {
     const Parameter& p = candidate_model.model.parameters[shape];
     c.parameters[p.name] = {s.cell[i], 0.0, p.unit};
   }
-  if (c.described) c.why = "already described by the free parameters (R² above 0.99)";
+  if (c.absorbed) c.why = "already described by the free parameters (R² above 0.99)";
   return c;
 }
 

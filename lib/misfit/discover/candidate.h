@@ -1,6 +1,6 @@
 #pragma once
 
-#include "misfit/discover/screen.h"
+#include "misfit/discover/unknown_curves.h"
 
 namespace misfit {
 

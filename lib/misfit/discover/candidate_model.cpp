@@ -42,10 +42,6 @@ bool has_linear_memory(const Effect& effect) {
   return states > 0;
 }
 
-bool reads_the_past(const EffectSpec& effect) {
-  return std::any_of(effect.quantities.begin(), effect.quantities.end(), [](const Role& role) { return role.late_by[0] != '\0'; });
-}
-
 /// Does any of its examples change with the time of the recording?
 bool reads_time(const Effect& effect) {
   const std::size_t size = effect.spec().ports.size() + effect.spec().states.size();
@@ -149,7 +145,7 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
       out.shapes.push_back(parameter);
       p.lower = operating_range.lower_bound(bound, c);
       axes.push_back(operating_range.grid(bound, c));
-    } else if (coefficients[c].scan.count < 0) {
+    } else if (coefficients[c].scan.is_frequency()) {
       out.frequency = parameter;
       out.frequency_from = coefficients[c].scan.from;
       out.frequency_to = coefficients[c].scan.to;
@@ -180,8 +176,8 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
   out.lags = has_linear_memory(*bound.effect) || reads_the_past(effect.spec());
 }
 
-/// A sensor effect changes what the states mean, and with them the Kalman gains: with gains held the information is overestimated (sigma of
-/// a camera roll nine times too small, of lens distortion three times). Hence differences of whole filter runs, gains included.
+/// A sensor effect changes what the states mean, and with them the Kalman gains: with gains fixed the information is overestimated (sigma
+/// of a camera roll nine times too small, of lens distortion three times). Hence differences of whole filter runs, gains included.
 Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const CandidateModel& candidate_model, const FilterModel& forced) {
   FilterRunner runner(forced, false);
   std::vector<double> values = forced.model.values();
@@ -208,7 +204,7 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
   return out;
 }
 
-/// The model with the effect there, all held at the estimate; nullopt where the effect does not suit.
+/// The model with the effect there, all fixed at the estimate; nullopt where the effect does not suit.
 std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                                  const EffectPlace& place) {
   const auto& [key, roles] = place;
@@ -240,6 +236,12 @@ bool already_listed(const CandidateModel& candidate_model, const std::vector<Can
 }
 
 }  // namespace
+
+bool reads_the_past(const EffectSpec& effect) {
+  return std::any_of(effect.quantities.begin(), effect.quantities.end(), [](const Role& role) { return role.late_by[0] != '\0'; });
+}
+
+bool has_memory(const EffectSpec& effect) { return !effect.states.empty() || reads_the_past(effect); }
 
 std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect) {
   std::vector<std::string> out;
@@ -288,7 +290,7 @@ std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, cons
   return out;
 }
 
-Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const FilterModel& forced) {
+Eigen::MatrixXd columns_with_fixed_gains(const FilterEstimate& estimate, const FilterModel& forced) {
   FilterRunner runner(forced, true);
   runner.set_parameters(forced.model.values());
   Eigen::MatrixXd out(counted_rows(estimate), std::ssize(forced.model.free_parameters()));
@@ -311,7 +313,7 @@ Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const Candid
   for (std::size_t i = 0; i < candidate_model.shapes.size(); ++i) forced.model.parameters[candidate_model.shapes[i]].value = cell[i];
   if (cell.size() > candidate_model.shapes.size()) forced.model.parameters[candidate_model.frequency].value = cell.back();
   return candidate_model.family == CandidateFamily::sensor ? columns_of_whole_runs(estimate, candidate_model, forced)
-                                                           : columns_with_gains_held(estimate, forced);
+                                                           : columns_with_fixed_gains(estimate, forced);
 }
 
 }  // namespace misfit

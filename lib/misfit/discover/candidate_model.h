@@ -10,7 +10,7 @@
 
 namespace misfit {
 
-/// A candidate effect assembled into the model: its strengths are free and 0, everything else is held; shapes have the values of a cell.
+/// A candidate effect assembled into the model: its strengths are free and 0, everything else is fixed; shapes have the values of a cell.
 struct CandidateModel {
   std::string effect;
   CandidateFamily family = CandidateFamily::physics;
@@ -31,6 +31,11 @@ struct CandidateModel {
   bool lags = false;            ///< it has own states with linear dynamics, or reads an input's past: a lag, a delay
 };
 
+/// A delay: it reads an input as it was before.
+[[nodiscard]] bool reads_the_past(const EffectSpec& effect);
+/// It depends on more than the present: by its own states, or a delay.
+[[nodiscard]] bool has_memory(const EffectSpec& effect);
+
 /// Stands for the time of the recording among indices of quantities, as in diagnose/features.h.
 inline constexpr int kTime = -1;
 
@@ -47,9 +52,9 @@ inline constexpr int kTime = -1;
 /// Ports that an effect writes, by name.
 [[nodiscard]] std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect);
 
-/// ∂(predicted − measured)/√S by the free parameters of a model with the random force, with the gains of the estimate's noise held: rows of
-/// the estimate × free parameters. Empty where the filter cannot be run.
-[[nodiscard]] Eigen::MatrixXd columns_with_gains_held(const FilterEstimate& estimate, const FilterModel& forced);
+/// ∂(predicted − measured)/√S by the free parameters of a model with the random force, with the gains of the estimate's noise fixed: rows
+/// of the estimate × free parameters. Empty where the filter cannot be run.
+[[nodiscard]] Eigen::MatrixXd columns_with_fixed_gains(const FilterEstimate& estimate, const FilterModel& forced);
 
 /// Columns of a candidate model's strengths at a cell: rows of the estimate × strengths. Empty where the model cannot be run so.
 [[nodiscard]] Eigen::MatrixXd sensitivity_columns(const FilterEstimate& estimate, const CandidateModel& candidate_model,

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "misfit/discover/alias.h"
+#include "misfit/discover/lack_of_fit.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -52,7 +52,7 @@ std::optional<ScreeningResult> ConditionalScores::score_at(const CandidateModel&
   out.cells_effective = other.screening->cells_effective;
   out.result = std::move(cell.result);
   out.columns = std::move(cell.columns);
-  out.log_p = log_score_tail(candidate_model, out.result.chi2) + std::log(out.cells_effective);
+  out.log_p = log_score_tail(candidate_model, out.result) + std::log(out.cells_effective);
   return out;
 }
 
@@ -67,7 +67,7 @@ std::optional<UnknownCurve> remaining_memory(const Refit& in, double drop, const
   const ConditionalScores conditional(in, context);
   for (const RankedCandidate& other : ranked) {
     const CandidateModel& lag = *other.screening->candidate_model;
-    if (!lag.lags || lag.ports.empty() || !other.screening->runs || other.candidate.described) continue;
+    if (!lag.lags || lag.ports.empty() || !other.screening->runs || other.candidate.absorbed) continue;
     const std::optional<ScreeningResult> found = conditional.best_score(other);  // none of the effect that is in the model
     if (!found || found->result.dof == 0) continue;
     const double p = family_wise_p(found->log_p, static_cast<double>(ranked.size()));

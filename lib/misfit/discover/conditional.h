@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "misfit/discover/accept.h"
-#include "misfit/discover/screen.h"
+#include "misfit/discover/unknown_curves.h"
 
 namespace misfit {
 

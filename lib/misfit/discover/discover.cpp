@@ -12,12 +12,13 @@
 #include "misfit/core/watch.h"
 #include "misfit/discover/accept.h"
 #include "misfit/discover/added_force.h"
-#include "misfit/discover/alias.h"
 #include "misfit/discover/candidate.h"
+#include "misfit/discover/fixed_parameters.h"
 #include "misfit/discover/free_run.h"
-#include "misfit/discover/held_parameters.h"
+#include "misfit/discover/lack_of_fit.h"
 #include "misfit/discover/refit_jobs.h"
 #include "misfit/discover/unfinished.h"
+#include "misfit/discover/unknown_curves.h"
 #include "misfit/discover/unknown_form.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/jobs/ranks.h"
@@ -62,11 +63,11 @@ class Search {
       if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context);
       if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
       if (none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context);
-      look_at_held_parameters();
-    } catch (const TimeSpent& limit) {
+      test_fixed_parameters();
+    } catch (const TimeLimitReached& limit) {
       spent = limit.what();
     }
-    const Unhurried writing_up;
+    const SuspendedTimeLimit writing_up;
     for (auto& e : ranked_) {
       if (!spent.empty() && e.refit && e.candidate.why.empty()) e.candidate.why = "not judged: " + spent;
     }
@@ -89,7 +90,7 @@ class Search {
     rank();
     refit_the_best_asked_for();
     for (auto& e : ranked_) {
-      if (!e.refit_begun && e.screening->runs && !e.candidate.described)
+      if (!e.refit_begun && e.screening->runs && !e.candidate.absorbed)
         e.candidate.predicted_drop = one_step(refit_work(), score_, *e.screening).drop;
       out_.candidates.push_back(e.candidate);
     }
@@ -124,7 +125,7 @@ class Search {
 
   /// Every rank comes to the refits, which are shared: none is stopped before.
   void screen_all() {
-    std::optional<Unhurried> all_ranks;
+    std::optional<SuspendedTimeLimit> all_ranks;
     if (ranks_started() > 1) all_ranks.emplace();
     screening_ = screen(scores(), candidate_models_, part(0.0, end_of_screen));
     unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
@@ -145,7 +146,7 @@ class Search {
 
   void sort_ranked() {
     std::stable_sort(ranked_.begin(), ranked_.end(), [](const RankedCandidate& a, const RankedCandidate& b) {
-      if (a.candidate.described != b.candidate.described) return b.candidate.described;
+      if (a.candidate.absorbed != b.candidate.absorbed) return b.candidate.absorbed;
       if (a.refit.has_value() != b.refit.has_value()) return a.refit.has_value();
       return a.log_p < b.log_p;
     });
@@ -159,10 +160,8 @@ class Search {
     }
     return best > 0.0 ? best : std::numeric_limits<double>::infinity();
   }
-  bool may_be_significant(const RankedCandidate& e) const {
-    return !e.candidate.described && e.candidate.p_value < 5.0 * options_.p_accept;
-  }
-  bool significant(const RankedCandidate& e) const { return !e.candidate.described && e.candidate.p_value < options_.p_accept; }
+  bool may_be_significant(const RankedCandidate& e) const { return !e.candidate.absorbed && e.candidate.p_value < 5.0 * options_.p_accept; }
+  bool significant(const RankedCandidate& e) const { return !e.candidate.absorbed && e.candidate.p_value < options_.p_accept; }
   static bool has_shapes(const RankedCandidate& e) {
     const CandidateModel& c = *e.screening->candidate_model;
     return c.cells.size() > 1 || c.frequency >= 0;
@@ -220,7 +219,7 @@ class Search {
   bool refit_nominated(const std::vector<const ScreeningResult*>& nominated, const char* name) {
     const auto begin = [&](const RankedCandidate& e) -> const ScreeningResult* {
       const auto found = std::find_if(nominated.begin(), nominated.end(), [&](const auto* s) {
-        return s->candidate_model == e.screening->candidate_model && !e.candidate.described;
+        return s->candidate_model == e.screening->candidate_model && !e.candidate.absorbed;
       });
       return found == nominated.end() ? nullptr : *found;
     };
@@ -262,7 +261,7 @@ class Search {
   /// free in the estimate may be where it is to make up for the missing effect.
   void refit_what_fell_short() {
     const auto fell_short = [&](const RankedCandidate& e) {
-      if (!e.refit_begun || e.candidate.described || !significant_in_screening(e)) return false;
+      if (!e.refit_begun || e.candidate.absorbed || !significant_in_screening(e)) return false;
       return e.refit ? e.refit->drop < least_of_score * e.screening->result.chi2 : !was_cut_off(e);
     };
     refit_again({.wanted = fell_short, .name = "_short"});
@@ -355,7 +354,7 @@ class Search {
     }
     c.actual_drop = e.refit->drop;
     c.held_out_gain.reset();  // that of an earlier refit
-    e.log_p = log_score_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
+    e.log_p = log_drop_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
     c.p_value = family_wise_p(e.log_p, families_);
     c.parameters = e.refit->parameters;
     c.roles = e.refit->moved.value_or(e.screening->candidate_model->roles);
@@ -364,7 +363,7 @@ class Search {
     c.fixed = e.refit->fixed;
     const FilterEstimate& there = e.refit->estimate;
     c.refit_values = there.model.values();
-    c.refit_log_noise = pack(there.noise, there.model.system->spec(), there.around).value;
+    c.refit_log_noise = pack(there.noise, there.model.system->spec(), there.reference).value;
     c.force = random_force(there);
   }
 
@@ -390,15 +389,15 @@ class Search {
     for (const auto& curve : unknown_) curves += (curve.of_output ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);
-    report_sensor_aliases(screening_, score_, out_);
+    report_sensor_imitations(screening_, score_, out_);
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
   }
 
-  void look_at_held_parameters() {
+  void test_fixed_parameters() {
     const auto best = std::find_if(ranked_.begin(), ranked_.end(), [this](const RankedCandidate& e) { return significant(e); });
     const double predicted = best == ranked_.end() ? 0.0 : best->screening->result.chi2;
-    if (auto held = held_in_words(refit_work(), score_, {predicted, families_, options_.p_accept}); !held.empty())
-      out_.held = std::move(held);
+    if (auto held = fixed_parameters_in_words(refit_work(), score_, {predicted, families_, options_.p_accept}); !held.empty())
+      out_.fixed_parameters = std::move(held);
   }
 
   const FilterEstimate& estimate_;
@@ -430,7 +429,7 @@ Discovery discover(const FittedStudy& fitted, const DiscoverOptions& options) {
   try {
     Search search(fitted, options);
     out = whole ? search.run() : search.predict();
-  } catch (const TimeSpent& spent) {
+  } catch (const TimeLimitReached& spent) {
     say_cut_off(spent.what(), false, out);
   }
   out.seconds = clock.seconds();

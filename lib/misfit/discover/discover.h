@@ -27,7 +27,7 @@ struct DiscoverOptions {
   int threads = 0;                           ///< 0: one per core; does not change the answer
   const Calibration* calibration = nullptr;  ///< its covariance and tests are priors of sensor effects
   double p_accept = 0.01;                    ///< family-wise
-  int max_refits = 6;                        ///< at once; as many again where none of the first is accepted
+  int max_refits = 6;                        ///< in one wave; which waves there are: lib/misfit/README.md, 6.5, step 1
   std::string only;                          ///< key of an effect: it alone is screened, and the drop of one Gauss–Newton step predicted
   /// With `only`: the best of these candidates is refitted, too, if it may be significant, and stands first; empty: none is.
   std::function<bool(const Candidate&)> refit_best_of = {};

@@ -29,7 +29,7 @@ std::vector<Drift> drifts_of(const Model& model) {
 
 }  // namespace
 
-std::vector<int> held_drifts(const Model& model) {
+std::vector<int> fixed_drifts(const Model& model) {
   std::vector<int> out;
   for (const Drift& drift : drifts_of(model)) {
     const Parameter& p = model.parameters[drift.parameter];

@@ -49,7 +49,7 @@ std::optional<FilterEstimate> free_run(const FilterEstimate& estimate) {
   constexpr double least = 1.2;
   constexpr int rounds = 3;  // of the size of the noise: initial states are weighed by it
   FilterEstimate out = estimate;
-  out.noise = hardly_forced(estimate.noise, estimate.around);
+  out.noise = hardly_forced(estimate.noise, estimate.reference);
   const Sizes one_step = sizes_of(estimate.traces, estimate.data, out.noise.channels.size());
   FilterRunner runner(out.forced, true);
   runner.set_parameters(out.forced.model.values());

@@ -118,7 +118,7 @@ std::optional<Without> without_effect(const FittedStudy& fitted, const std::stri
     return std::nullopt;  // another effect needs it
   } catch (const RunError&) {
     return std::nullopt;
-  } catch (const TimeSpent&) {
+  } catch (const TimeLimitReached&) {
     return std::nullopt;
   }
 }
@@ -146,7 +146,7 @@ std::optional<FreedWidth> freed_width(const FilterEstimate& estimate, const std:
       return FreedWidth{coefficients[c].name, value, 2.0 * (there.objective - estimate.objective)};
     } catch (const RunError&) {
       continue;
-    } catch (const TimeSpent&) {
+    } catch (const TimeLimitReached&) {
       return std::nullopt;
     }
   }

@@ -32,15 +32,15 @@ struct Without {
 /// without it says.
 [[nodiscard]] bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas = 4.5);
 
-/// A smoothing (ScanSpec::smooths) of one of the model's effects that was held, estimated.
+/// A smoothing (ScanSpec::smooths) of one of the model's effects that was fixed, estimated.
 struct FreedWidth {
   std::string coefficient;  ///< as the effect's file calls it
   double value = 0.0;       ///< [its unit]
-  double drop = 0.0;        ///< 2 [objective(free) − objective(held)]
+  double drop = 0.0;        ///< 2 [objective(free) − objective(fixed)]
 };
 
 /// A width at which discovery has left an effect is that which its filter could resolve beside what was still missing then; as more is
-/// explained the filter resolves more. The first held one of the effect that ends inside its bounds, no narrower than is resolved now
+/// explained the filter resolves more. The first fixed one of the effect that ends inside its bounds, no narrower than is resolved now
 /// (OperatingRange::lower_bound()); nullopt: it has none, or the search did not converge.
 [[nodiscard]] std::optional<FreedWidth> freed_width(const FilterEstimate& estimate, const std::vector<Signals>& experiments,
                                                     const std::string& name, int threads);

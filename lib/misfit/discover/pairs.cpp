@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "misfit/core/text.h"
-#include "misfit/discover/alias.h"
 #include "misfit/discover/conditional.h"
+#include "misfit/discover/lack_of_fit.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/math/statistics.h"
 
@@ -23,7 +23,7 @@ SecondEffect second_effect_given(const RankedCandidate& in, const ConditionalSco
                                  const std::vector<RankedCandidate>& ranked, double p_accept) {
   SecondEffect best;
   for (const RankedCandidate& other : ranked) {
-    if (&other == &in || !other.screening->runs || other.candidate.described || other.candidate.family == CandidateFamily::sensor) continue;
+    if (&other == &in || !other.screening->runs || other.candidate.absorbed || other.candidate.family == CandidateFamily::sensor) continue;
     auto found = conditional.score(other);
     if (!found || found->result.dof == 0 || (best.entry != nullptr && found->log_p >= best.score.log_p)) continue;
     best = {&other, std::move(*found)};
@@ -39,7 +39,7 @@ bool needed_given(const RankedCandidate& in, const Refit& both, const RankedCand
   const Refit& alone = other.refit ? *other.refit : *fitted;
   if (!alone.ok || !alone.estimate.converged) return false;
   const double drop = in.refit->drop + both.drop - alone.drop;
-  const double log_p = log_score_tail(*in.screening->candidate_model, drop) + std::log(in.screening->cells_effective);
+  const double log_p = log_drop_tail(*in.screening->candidate_model, drop) + std::log(in.screening->cells_effective);
   return family_wise_p(log_p, context.families) < context.options.p_accept;
 }
 
@@ -79,7 +79,7 @@ std::vector<RankedCandidate*> rivals_of(const RankedCandidate& single, std::vect
   std::vector<RankedCandidate*> out;
   for (RankedCandidate& e : ranked) {
     const CandidateModel& other = *e.screening->candidate_model;
-    if (&e == &single || !e.screening->runs || e.screening->columns.cols() == 0 || e.candidate.described) continue;
+    if (&e == &single || !e.screening->runs || e.screening->columns.cols() == 0 || e.candidate.absorbed) continue;
     if (other.family != CandidateFamily::sensor && !other.lags && compete(*single.screening->candidate_model, other)) out.push_back(&e);
   }
   return out;
@@ -124,7 +124,7 @@ std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vect
     out.held_out_gain = held_out.gain(both.estimate);
     if (!(out.held_out_gain > least_held_out_gain(estimated_parameters(*in.refit) + estimated_parameters(both)))) return std::nullopt;
   }
-  // The threshold stays a share of the drop of `in` alone, as in step 2: with the drop of both, a better second effect would allow more
+  // The threshold stays a share of the drop of `in` alone, as in step 5: with the drop of both, a better second effect would allow more
   // lack of fit.
   const bool lags = in.screening->candidate_model->lags || second.score.candidate_model->lags;
   if (lags && remaining_memory(both, in.refit->drop, ranked, context)) return std::nullopt;

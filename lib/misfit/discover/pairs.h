@@ -18,8 +18,8 @@ struct Pair {
   double drop = 0.0;           ///< of both, where they are in its place
 };
 
-/// Step 4 of accept_best(), for one candidate: another known effect beside which `in` holds. Of an alias: it removes the lack of fit that
-/// `in` leaves; of one that gains nothing by itself on what is held out: both together do, too.
+/// Step 6 of accept_best(), for one candidate: another known effect beside which `in` holds. Of an imitation: it removes the lack of fit
+/// that `in` leaves; of one that gains nothing by itself on what is held out: both together do, too.
 [[nodiscard]] std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked,
                                                     HeldOut& held_out, const SearchContext& context);
 
@@ -29,7 +29,7 @@ struct PairInstead {
   Pair pair;
 };
 
-/// Step 5 of accept_best(): two effects of the quantity and port of the chosen one that explain more between them than it does with any
+/// Step 7 of accept_best(): two effects of the quantity and port of the chosen one that explain more between them than it does with any
 /// other of these. What is the sum of two forms (dry friction and drag) often looks like a third (a cubic), which leaves little. Asked of
 /// forces without memory only.
 [[nodiscard]] std::optional<PairInstead> better_pair(std::vector<RankedCandidate>& ranked, RankedCandidate& single, HeldOut& held_out,

@@ -52,14 +52,14 @@ std::map<std::string, Estimate> parameters_of_effect(const FilterEstimate& estim
   std::map<std::string, Estimate> out;
   const CandidateModel& candidate_model = *screening.candidate_model;
   const BoundEffect& bound = estimate.model.effects.back();
-  const std::vector<int> idle = held_drifts(estimate.model);
+  const std::vector<int> idle = fixed_drifts(estimate.model);
   for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
     const int at = bound.coefficients[c].parameter;
     if (at < 0 || bound.effect->spec().coefficients[c].shared || place_of(idle, at) >= 0) continue;
     const int strength = place_of(candidate_model.strengths, at);
     const Parameter& p = estimate.model.parameters[at];
     double sigma = standard_error_of(estimate.model, estimate.covariance, at).value_or(0.0);
-    // With Kalman gains held the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
+    // With Kalman gains fixed the covariance of a sensor effect is too small (sensitivity_columns); screening uses whole runs.
     const bool screened = strength >= 0 && strength < screening.result.sigma.size();
     if (candidate_model.family == CandidateFamily::sensor && screened && p.free) sigma = screening.result.sigma[strength];
     out[p.name] = {p.value, sigma, p.unit};
@@ -107,7 +107,7 @@ FilterOptions options_like(const FilterEstimate& estimate, int threads) {
   FilterOptions options;
   options.threads = threads;
   options.noise = estimate.noise;
-  options.around = estimate.around;
+  options.reference = estimate.reference;
   options.use = uses_of(estimate);
   options.plans = plans_of(estimate);
   options.choose_roughness = false;
@@ -212,7 +212,7 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
     if (!runner.run(data[e], without.noise, traces[e])) return {screening.result.chi2, std::nullopt, {}};
   }
   constexpr int steps_of_noise = 3;
-  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.around, work.threads, steps_of_noise});
+  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.reference, work.threads, steps_of_noise});
   const double objective = -noise.minus_log_density + log_prior(model, penalties_as_of(without, model));
   const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
   OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
@@ -244,7 +244,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
       out.ok = true;
     } catch (const RunError& error) {
       out.why = error.what();
-    } catch (const TimeSpent&) {  // said below
+    } catch (const TimeLimitReached&) {  // said below
     }
   };
   const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
@@ -290,7 +290,7 @@ double HeldOut::loglik(const FilterEstimate& estimate) const {
   options.use = without_last_quarter(without_);
   options.verify = false;
   const FilterEstimate shorter = estimate_filter(estimate.model, estimate.penalties, experiments_, options);
-  if (shorter.out_of_time) throw TimeSpent(Watch::current()->words());
+  if (shorter.out_of_time) throw TimeLimitReached(Watch::current()->words());
   return predictive_loglik(shorter);
 }
 

@@ -16,7 +16,7 @@ struct Refit {
   FilterEstimate estimate;
   ModelRequest request;
   std::map<std::string, Estimate> parameters;               ///< of the effect
-  std::vector<std::string> free, fixed;                     ///< its coefficients that are estimated or held unlike the effect's file says
+  std::vector<std::string> free, fixed;                     ///< its coefficients that are estimated or fixed unlike the effect's file says
   std::string partial;                                      ///< why it is no whole effect (whole_strength.h); empty: it is, or may be
   std::optional<std::map<std::string, std::string>> moved;  ///< its roles, where it acts on its input itself now (whole_strength.h)
   std::string also;  ///< another explanation that these data hardly tell from this one, in words; empty: none found
@@ -78,7 +78,8 @@ struct OneStep {
 /// Free coefficients of its own that the refitted effect has.
 [[nodiscard]] int estimated_parameters(const Refit& refit);
 
-/// Held-out gains up to this, half for each parameter, are chance.
+/// [log-likelihood] What a held-out gain must exceed: half for each parameter. A superfluous one gains that in the data that it is
+/// estimated from, on average, and loses as much in those held out: a margin, not a probability.
 [[nodiscard]] double least_held_out_gain(int parameters);
 
 /// Gain of the held-out predictive density over an estimate. Where the study holds nothing out, both models are fitted again without the
@@ -89,7 +90,7 @@ class HeldOut {
   HeldOut(const FilterEstimate& without, const std::vector<Signals>& experiments, int threads)
       : without_(without), experiments_(experiments), threads_(threads) {}
 
-  /// TimeSpent: a limit of time was spent in one of these fits.
+  /// TimeLimitReached: a limit of time was spent in one of these fits.
   [[nodiscard]] double gain(const FilterEstimate& with);
 
  private:

@@ -81,13 +81,13 @@ WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vec
       if (of_input != 0.0 && bound.coefficients[c].parameter >= 0) there.parameters[bound.coefficients[c].parameter].value = of_input;
     }
     out = {std::move(there), *request, request->effects.back().roles};
-  } catch (const InputError&) {  // it cannot act there: it stays at its port, its strength held at the whole
+  } catch (const InputError&) {  // it cannot act there: it stays at its port, its strength fixed at the whole
   }
   return out;
 }
 
 /// The estimate from where the effect has a time constant of the system, and the system, by the parameter that moves it, the effect's. The
-/// others are fitted first with these two held: a gain is far off then.
+/// others are fitted first with these two fixed: a gain is far off then.
 FilterEstimate with_exchanged_poles(const RefitWork& work, const FilterEstimate& estimate, const MovedPole& effect) {
   const FilterOptions options = options_like(work.without, work.threads);  // from its noise: the start is far from the maximum
   const auto from = [&](const Model& start) {
@@ -129,7 +129,7 @@ bool fix_whole_strengths(const RefitWork& work, Refit& out) {
       out.moved = start.moved;
       return true;
     }
-  } catch (const TimeSpent&) {
+  } catch (const TimeLimitReached&) {
     return false;
   } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
   }
@@ -157,7 +157,7 @@ void try_exchanged_poles(const RefitWork& work, Refit& out) {
       } else if (taken) {
         out.also.clear();  // of an order that was left
       }
-    } catch (const TimeSpent&) {  // the order that was found stays
+    } catch (const TimeLimitReached&) {  // the order that was found stays
       return;
     } catch (const RunError&) {  // it cannot be run in that order
     }
@@ -218,7 +218,7 @@ void note_half_a_sample(Refit& out) {
 bool free_drifts(const RefitWork& work, Refit& out) {
   constexpr double rare = 1e-3;
   Model start = out.estimate.model;
-  const std::vector<int> drifts = held_drifts(start);
+  const std::vector<int> drifts = fixed_drifts(start);
   if (drifts.empty()) return true;
   for (const int drift : drifts) start.parameters[drift].free = true;
   FilterOptions options = options_like(work.without, work.threads);
@@ -228,7 +228,7 @@ bool free_drifts(const RefitWork& work, Refit& out) {
     if (drifting.out_of_time) return false;
     const double drop = 2.0 * (drifting.objective - out.estimate.objective);
     if (drifting.converged && chi_square_tail(drop, static_cast<double>(drifts.size())) < rare) out.estimate = std::move(drifting);
-  } catch (const TimeSpent&) {
+  } catch (const TimeLimitReached&) {
     return false;
   } catch (const RunError&) {  // it cannot be run with a drift: it stays without
   }

@@ -37,7 +37,7 @@ SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const Screen
     if (work.afresh) return {effect.result.chi2, refit(work, effect)};
     const OneStep step = work.screened == nullptr ? one_step(work, score, effect) : step_from_elsewhere(work, score, effect);
     return {step.drop, refit(work, effect, step)};
-  } catch (const TimeSpent& spent) {
+  } catch (const TimeLimitReached& spent) {
     return {effect.result.chi2, unfinished(effect, spent.what())};
   }
 }

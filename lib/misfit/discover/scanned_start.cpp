@@ -16,7 +16,7 @@ std::string coefficient_of(const BoundEffect& effect, int parameter) {
   return {};
 }
 
-/// Shapes that are held have one value in all cells.
+/// Shapes that are fixed have one value in all cells.
 void hold(const std::map<std::string, double>& held, CandidateModel& out) {
   const BoundEffect& effect = out.model.effects.back();
   const auto held_value = [&](int parameter) {
@@ -58,7 +58,7 @@ std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequ
     out.values.push_back(own ? std::optional(found.estimate.model.parameters[coefficient.parameter].value) : std::nullopt);
   }
   out.refit_values = found.estimate.model.values();
-  out.refit_log_noise = pack(found.estimate.noise, found.estimate.model.system->spec(), found.estimate.around).value;
+  out.refit_log_noise = pack(found.estimate.noise, found.estimate.model.system->spec(), found.estimate.reference).value;
   return out;
 }
 

@@ -11,11 +11,22 @@
 #include "misfit/math/statistics.h"
 
 namespace misfit {
+namespace {
 
-double log_score_tail(const CandidateModel& candidate_model, double chi2) {
-  if (!(chi2 > 0.0)) return 0.0;
+double log_tail(const CandidateModel& candidate_model, double chi2, double dof) {
+  if (!(chi2 > 0.0) || !(dof > 0.0)) return 0.0;
   const bool one_side = candidate_model.strengths.size() == 1 && candidate_model.one_sided.front();
-  return log_chi_square_tail(chi2, static_cast<double>(candidate_model.strengths.size())) + (one_side ? std::log(0.5) : 0.0);
+  return log_chi_square_tail(chi2, dof) + (one_side ? std::log(0.5) : 0.0);
+}
+
+}  // namespace
+
+double log_score_tail(const CandidateModel& candidate_model, const ScoreResult& score) {
+  return log_tail(candidate_model, score.chi2, static_cast<double>(score.dof));
+}
+
+double log_drop_tail(const CandidateModel& candidate_model, double drop) {
+  return log_tail(candidate_model, drop, static_cast<double>(candidate_model.strengths.size()));
 }
 
 CellScore score_cell(const FilterEstimate& estimate, const ScoreTest& score, const CandidateModel& candidate_model,
@@ -128,13 +139,6 @@ double independent_frequencies(const FrequencyGrid& grid, double chi2) {
 
 double family_wise_p(double log_p, double families) { return sidak(std::min(1.0, std::exp(log_p)), families); }
 
-double log_chi_square_tail(double x, double dof) {
-  const double p = chi_square_tail(x, dof);
-  if (p > 1e-290) return std::log(p);
-  // Leading term of the upper incomplete gamma function: (x/2)^(dof/2 − 1) e^(−x/2)/Γ(dof/2).
-  return (0.5 * dof - 1.0) * std::log(0.5 * x) - 0.5 * x - std::lgamma(0.5 * dof);
-}
-
 std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<CandidateModel>& candidate_models,
                                     const ProgressFn& progress) {
   std::vector<ScreeningResult> out(candidate_models.size());
@@ -179,165 +183,11 @@ std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<Can
     if (!best.runs || best.result.dof == 0) return;
     constexpr double max_p_refined = 0.1;
     if (!candidate_models[s].shapes.empty() &&
-        sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < max_p_refined)
+        sidak(std::exp(log_score_tail(candidate_models[s], best.result)), best.cells_effective) < max_p_refined)
       refine_cell(work.estimate, work.score, best);
-    best.log_p = log_score_tail(candidate_models[s], best.result.chi2);
+    best.log_p = log_score_tail(candidate_models[s], best.result);
     best.p_value = sidak(std::exp(best.log_p), best.cells_effective);
     best.log_p += std::log(best.cells_effective);
-  });
-  return out;
-}
-
-std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
-  std::vector<int> out;
-  for (int p = 0; p < int_size(system.dynamic_ports); ++p) {
-    const int moved = index_of(system.states, system.dynamic_ports[p].conjugate);
-    const bool has_rate =
-        moved >= 0 && std::any_of(system.states.begin(), system.states.end(), [&](const StateSpec& s) { return s.rate_of == moved; });
-    const auto& forced = system.force_ports;
-    if (!has_rate || std::find(forced.begin(), forced.end(), system.dynamic_ports[p].name) != forced.end()) out.push_back(p);
-  }
-  return out;
-}
-
-std::string UnknownCurve::label() const {
-  if (!memory.empty()) return memory;
-  if (of_output) return "an error of " + port + " that depends on " + quantity;
-  return other.empty() ? "an unknown curve " + port + "(" + quantity + ")"
-                       : "an unknown surface " + port + "(" + quantity + ", " + other + ")";
-}
-
-std::string UnknownCurve::quantities() const { return other.empty() ? quantity : quantity + " and " + other; }
-
-namespace {
-
-/// Score test of a force, or an error of an output, that is a sum of these functions of a quantity; `columns`: what each adds to the
-/// residuals.
-UnknownCurve unknown_form(const ScoreWork& work, const std::string& port, const Features& f, const Eigen::MatrixXd& columns) {
-  UnknownCurve out;
-  out.port = port;
-  out.quantity = f.quantity;
-  out.quantity_index = f.index;
-  out.result = work.score.test(columns);
-  if (out.result.dof == 0) return out;
-  out.log_p = log_chi_square_tail(out.result.chi2, out.result.dof);
-  out.p_value = std::exp(out.log_p);
-  return out;
-}
-
-UnknownCurve unknown_force(const ScoreWork& work, int port, const Features& f) {
-  return unknown_form(work, work.estimate.model.system->spec().dynamic_ports[port].name, f, work.force.columns(port, f.f, f.ahead));
-}
-
-UnknownCurve unknown_error(const ScoreWork& work, int output, const Features& f) {
-  UnknownCurve out =
-      unknown_form(work, work.estimate.model.system->spec().outputs[output].name, f, work.force.output_columns(output, f.f, f.ahead));
-  out.of_output = true;
-  return out;
-}
-
-/// Outputs whose errors of unknown form are looked for.
-std::size_t count_of_outputs(const ScoreWork& work) { return work.calibrated ? 0 : work.estimate.model.system->spec().outputs.size(); }
-
-/// Of the own state of an effect to which the features belong.
-UnknownCurve unknown_own_rate(const ScoreWork& work, const BoundEffect& effect, const Features& f) {
-  const Model& model = work.estimate.model;
-  const std::vector<std::string> ports = names_of_ports(model.system->spec(), effect);
-  UnknownCurve out = unknown_form(work, ports.empty() ? effect.name : ports.front(), f, work.force.own_rate_columns(f.index, f.f));
-  out.of_output = effect.kind == PortKind::sensor;
-  out.memory = "another dependence of d(" + model.own_state_names[f.index] + ")/dt on " + f.quantity;
-  out.quantity = past_read_by(model.system->spec(), effect);
-  return out;
-}
-
-std::vector<Features> features_of_unknown_curves(const ScoreWork& work) {
-  std::vector<Features> out = features_of(work.estimate, work.force, hats_of_unknown_curves);
-  for (Features& past : features_of_pasts(work.estimate, work.force, hats_of_unknown_curves)) out.push_back(std::move(past));
-  return out;
-}
-
-/// The best of those of one quantity (features of its past) at one place, corrected for their number. In the order of the list.
-std::vector<UnknownCurve> best_of_each(const std::vector<UnknownCurve>& all) {
-  std::vector<UnknownCurve> out;
-  std::vector<double> count;
-  for (const UnknownCurve& curve : all) {
-    const auto same = std::find_if(out.begin(), out.end(), [&](const UnknownCurve& c) {
-      return c.of_output == curve.of_output && c.port == curve.port && c.quantity == curve.quantity;
-    });
-    if (same == out.end()) {
-      out.push_back(curve);
-      count.push_back(1.0);
-    } else {
-      if (curve.log_p < same->log_p) *same = curve;
-      ++count[same - out.begin()];
-    }
-  }
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k].p_value = sidak(out[k].p_value, count[k]);
-    out[k].log_p += std::log(count[k]);
-  }
-  return out;
-}
-
-}  // namespace
-
-std::string past_read_by(const SystemSpec& system, const BoundEffect& effect) {
-  const int q = effect.quantities.empty() ? -1 : effect.quantities.front();
-  if (q < 0) return past_of(effect.name);
-  return past_of(q < int_size(system.quantities) ? system.quantities[q].name : system.outputs[q - int_size(system.quantities)].name);
-}
-
-std::size_t count_of_unknown_curves(const ScoreWork& work) {
-  std::set<std::string> quantities;
-  for (const Features& f : features_of_unknown_curves(work)) quantities.insert(f.quantity);
-  return quantities.size() * (ports_of_unknown_curves(work.estimate.model.system->spec()).size() + count_of_outputs(work));
-}
-
-std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
-  const std::vector<Features> features = features_of_unknown_curves(work);
-  const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
-  const std::size_t places = ports.size() + count_of_outputs(work);
-  std::vector<UnknownCurve> all(features.size() * places);
-  run_jobs(
-      all.size(), work.threads,
-      [&](std::size_t k) {
-        const Features& f = features[k / places];
-        const std::size_t place = k % places;
-        all[k] =
-            place < ports.size() ? unknown_force(work, ports[place], f) : unknown_error(work, static_cast<int>(place - ports.size()), f);
-      },
-      progress);
-  return best_of_each(all);
-}
-
-std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects) {
-  const std::vector<BoundEffect>& all = work.estimate.model.effects;
-  std::vector<std::pair<const BoundEffect*, Features>> tests;
-  for (std::size_t e = all.size() - std::min<std::size_t>(effects, all.size()); e < all.size(); ++e) {
-    for (Features& f : features_of_own_states(work.estimate, work.force, all[e], hats_of_unknown_curves))
-      tests.emplace_back(&all[e], std::move(f));
-  }
-  std::vector<UnknownCurve> out(tests.size());
-  run_jobs(out.size(), work.threads, [&](std::size_t k) { out[k] = unknown_own_rate(work, *tests[k].first, tests[k].second); });
-  return out;
-}
-
-std::vector<UnknownCurve> unknown_surfaces(const ScoreWork& work, const std::vector<int>& read) {
-  constexpr int hats = 4;
-  const std::vector<Features> features = features_of(work.estimate, work.force, hats);
-  const auto is_read = [&](const Features& f) { return place_of(read, f.index) >= 0; };
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t a = 0; a < features.size(); ++a) {
-    for (std::size_t b = a + 1; b < features.size(); ++b) {
-      if (is_read(features[a]) || is_read(features[b])) pairs.emplace_back(a, b);
-    }
-  }
-  const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
-  std::vector<UnknownCurve> out(pairs.size() * ports.size());
-  run_jobs(out.size(), work.threads, [&](std::size_t k) {
-    const auto [a, b] = pairs[k / ports.size()];
-    out[k] = unknown_force(work, ports[k % ports.size()], products_of(features[a], features[b]));
-    out[k].other = features[b].quantity;
   });
   return out;
 }

@@ -44,51 +44,13 @@ struct ScoreWork {
 [[nodiscard]] std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<CandidateModel>& candidate_models,
                                                   const ProgressFn& progress = {});
 
-/// Hats per quantity of the unknown curves.
-inline constexpr int hats_of_unknown_curves = 8;
-
-/// log p-value of a candidate model's chi² by chance, in a score as in a refit: of a single strength that cannot be negative only one side
-/// counts; 1 where there is nothing.
-[[nodiscard]] double log_score_tail(const CandidateModel& candidate_model, double chi2);
+/// log p-value of a candidate model's score by chance: chi² with as many degrees of freedom as its columns have independent directions; of
+/// a single strength that cannot be negative only one side counts; 1 where there is nothing.
+[[nodiscard]] double log_score_tail(const CandidateModel& candidate_model, const ScoreResult& score);
+/// The same of a refit's drop, with a degree of freedom for each strength.
+[[nodiscard]] double log_drop_tail(const CandidateModel& candidate_model, double drop);
 
 /// p-value of the best of `families`, from the logarithm of its own (corrected for its cells).
 [[nodiscard]] double family_wise_p(double log_p, double families);
-
-/// Dynamic ports on which a force of unknown form may act: not those of a state whose rate is another state (no force turns a speed into
-/// something else; what seems to is the sensor's).
-[[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);
-
-/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another; or so an
-/// error of an output.
-struct UnknownCurve {
-  bool of_output = false;  ///< `port` is an output
-  std::string port, quantity;
-  int quantity_index = -1;
-  std::string other;   ///< second quantity of a surface; empty: a curve
-  std::string memory;  ///< what stands for a memory of unknown form in place of this, in words; empty: nothing
-  ScoreResult result;
-  double log_p = 0.0, p_value = 1.0;
-
-  /// "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "an error of y that depends on u", "delay (input = u)"
-  [[nodiscard]] std::string label() const;
-  [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
-};
-
-/// Of every quantity, and of the past of every input, on every dynamic port, and as errors of every output.
-[[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
-[[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
-
-/// past_of() what an effect with a memory reads first.
-[[nodiscard]] std::string past_read_by(const SystemSpec& system, const BoundEffect& effect);
-
-/// Changes of the rate of every own state of the last `effects` effects, of that state and of that rate: whether their memories are of
-/// these forms. `quantity`: past_read_by() the effect.
-[[nodiscard]] std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects);
-
-/// Of every pair of quantities, time among them, of which `read` has at least one, on every dynamic port; four hats of each.
-[[nodiscard]] std::vector<UnknownCurve> unknown_surfaces(const ScoreWork& work, const std::vector<int>& read);
-
-/// log P(chi² > x), accurate where the probability underflows.
-[[nodiscard]] double log_chi_square_tail(double x, double dof);
 
 }  // namespace misfit

@@ -151,7 +151,7 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
     c.p_value = sidak(curve.p_value, families);
     for (const int p : parameters_in_columns(work.estimate, columns)) {
       const Parameter& held = work.estimate.model.parameters[p];
-      c.held[held.name] = {held.value, 0.0, held.unit};
+      c.fixed_in_model[held.name] = {held.value, 0.0, held.unit};
     }
     out.push_back(std::move(c));
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "misfit/data/candidates.h"
-#include "misfit/discover/screen.h"
+#include "misfit/discover/unknown_curves.h"
 
 namespace misfit {
 
@@ -24,7 +24,7 @@ namespace misfit {
 
 /// Free parameters of the model, numbers only, which these columns (all samples × hats) describe beside the other free ones and which are
 /// not described by those alone: 1 − R² < 0.01. A curve of the same quantity and such a parameter could not both be estimated: constants
-/// and straight lines are curves, too. One at a time, the best described first, since the next may be determined once it is held.
+/// and straight lines are curves, too. One at a time, the best described first, since the next may be determined once it is fixed.
 [[nodiscard]] std::vector<int> parameters_in_columns(const FilterEstimate& estimate, const Eigen::MatrixXd& columns);
 
 }  // namespace misfit

@@ -8,6 +8,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/discover/bindings.h"
+#include "misfit/discover/candidate_model.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/inference/states.h"
 
@@ -166,7 +167,7 @@ std::optional<std::string> undetermined_strengths(const Model& model, const Eige
 
 std::optional<std::string> undetermined_time(const Model& model, const Eigen::MatrixXd& covariance) {
   const BoundEffect& effect = model.effects.back();
-  if (effect.effect->spec().states.empty()) return std::nullopt;
+  if (!has_memory(effect.effect->spec())) return std::nullopt;
   for (const auto& coefficient : effect.coefficients) {
     if (coefficient.parameter < 0 || model.parameters[coefficient.parameter].unit != "s") continue;
     if (const auto value = undetermined(model, covariance, coefficient.parameter)) return "its time is not determined: " + *value;
@@ -180,11 +181,11 @@ std::optional<std::string> outlasts_recording(const Model& model, double seconds
   for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
     if (effect.coefficients[c].parameter < 0) continue;
     const Parameter& p = model.parameters[effect.coefficients[c].parameter];
-    const bool frequency = spec.coefficients[c].scan.count < 0;
+    const bool frequency = spec.coefficients[c].scan.is_frequency();
     if (frequency && p.value * seconds < 1.0)
       return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + " is less than one period in the recording, " +
              in_display_unit(seconds, "s");
-    if (spec.states.empty() || p.unit != "s" || p.value < 0.5 * seconds) continue;
+    if (!has_memory(spec) || p.unit != "s" || p.value < 0.5 * seconds) continue;
     return "its time " + p.name + " = " + in_display_unit(p.value, p.unit) + " is longer than half of the recording, " +
            in_display_unit(seconds, "s");
   }

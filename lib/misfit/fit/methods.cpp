@@ -80,7 +80,7 @@ Estimation run_output_error(const EstimationTask& task) {
 
 OutputErrorStart quick_output_error() {
   OutputErrorStart options;
-  options.coloured = false;
+  options.thorough = false;
   options.keep_roughness = true;
   return options;
 }
@@ -112,7 +112,7 @@ std::optional<FilterStart> free_start(const Model& start, const EstimationTask& 
     if (!follows_freely(start, task.experiments)) return std::nullopt;
     if (start.free_parameters().empty()) return FilterStart{start, curve_penalties(start), {}, true};
     OutputErrorStart options;
-    options.coloured = false;
+    options.thorough = false;
     options.from_regression = from_regression;
     const FittedModel fitted = output_error({{}, start, curve_penalties(start), {}}, task.experiments, options);
     if (!fitted.fit.usable()) return std::nullopt;
@@ -161,16 +161,16 @@ Estimation run_filter_error(const EstimationTask& task) {
   FilterOptions options;
   options.threads = task.threads;
   if (task.contained && contains(task.model, *task.contained)) {
-    options.around = usual_noise_of(*task.contained, task.model);
+    options.reference = usual_noise_of(*task.contained, task.model);
     options.use = same_use(*task.contained, task.experiments);
   }
   const FilterStarts starts = filter_starts(task);
-  FilterError result = filter_error(starts.list, task.experiments, options);
+  FilterErrorFit result = filter_error(starts.list, task.experiments, options);
   if (result.estimate && !starts.warning.empty()) result.fit.warnings.push_back(starts.warning);
   if (!result.estimate) {
     std::vector<FilterStart> own = {{task.model, curve_penalties(task.model)}};
     if (auto freely = free_start(task.model, task, false)) own.push_back(std::move(*freely));
-    FilterError again = filter_error(own, task.experiments, options);
+    FilterErrorFit again = filter_error(own, task.experiments, options);
     if (again.estimate) {
       again.fit.warnings.push_back(begun_at_own_values(result.fit.message));
       result = std::move(again);
@@ -181,7 +181,7 @@ Estimation run_filter_error(const EstimationTask& task) {
   out.at.fitted.model = out.filter->model;
   out.at.fitted.penalties = out.filter->penalties;
   out.at.noise = out.filter->noise;
-  out.at.around = out.filter->around;
+  out.at.reference = out.filter->reference;
   out.at.use.emplace();
   for (const auto& data : out.filter->data) out.at.use->push_back(data.use);
   return out;
@@ -191,7 +191,7 @@ FilterOptions warm_filter(const FittedMethod& from) {
   FilterOptions options;
   options.threads = 1;
   options.noise = from.noise;
-  options.around = from.around;
+  options.reference = from.reference;
   options.choose_roughness = false;
   options.verify = false;
   return options;
@@ -234,7 +234,7 @@ Maximisation maximise(const FittedMethod& from, const Experiments& experiments, 
     return out;
   } catch (const RunError& error) {
     return {{}, error.what(), {}};
-  } catch (const TimeSpent&) {
+  } catch (const TimeLimitReached&) {
     return {{}, watch.words(), {}};
   }
 }
@@ -252,7 +252,7 @@ Fit refit_in_time(const FittedMethod& from, const Experiments& experiments) {
   try {
     Fit fit = estimator(from.method).refit(from, experiments);
     if (fit.status == FitStatus::converged || !watch.spent()) return fit;
-  } catch (const TimeSpent&) {  // said below
+  } catch (const TimeLimitReached&) {  // said below
   }
   throw RunError(watch.words());
 }

@@ -23,11 +23,11 @@ struct EstimationTask {
   std::optional<ContainedFit> contained = {};  ///< of a method with a random force: to start from, among others
 };
 
-/// A fit as others start from it: of replicas of its data, or of the same data with a parameter held. Roughness stays as it was chosen.
+/// A fit as others start from it: of replicas of its data, or of the same data with a parameter fixed. Roughness stays as it was chosen.
 struct FittedMethod {
   std::string method;                                       ///< EstimatorInfo::name
   FittedModel fitted;                                       ///< penalties with the weights that were chosen
-  std::optional<FilterNoise> noise, around;                 ///< of a method with a random force
+  std::optional<FilterNoise> noise, reference;              ///< of a method with a random force
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< of the same: which measurements count
   SlidingBinOptions bins = {};
   double time_limit = 0.0;  ///< of every fit from here [s]; 0: none
@@ -38,7 +38,7 @@ struct Estimation {
   std::optional<FilterEstimate> filter;  ///< of a method with a random force, unless it declined; refers to the task's experiments
 };
 
-/// A maximum of the penalised log-likelihood, roughness held.
+/// A maximum of the penalised log-likelihood, roughness fixed.
 struct Maximisation {
   std::optional<double> objective;  ///< nullopt: the search ended nowhere …
   std::string why;                  ///< … for this reason
@@ -56,7 +56,7 @@ struct SearchStart {
 struct Estimator {
   const EstimatorInfo& info;
   Estimation (*run)(const EstimationTask& task);
-  /// Again from where the fit ended, on other data of the same model (knots are the model's). The roughness is held, sigmas are those of
+  /// Again from where the fit ended, on other data of the same model (knots are the model's). The roughness is fixed, sigmas are those of
   /// white residuals. RunError: the model cannot be run on these data.
   Fit (*refit)(const FittedMethod& from, const std::vector<Signals>& experiments);
   /// nullptr: the method has no likelihood.

@@ -16,7 +16,7 @@ void damping_to_zero(Model& model) {
   }
 }
 
-/// Equation error with the parameters of `kept` held where `asked` has them, and free again afterwards.
+/// Equation error with the parameters of `kept` fixed where `asked` has them, and free again afterwards.
 FittedModel with_kept(const Model& asked, const std::vector<Signals>& experiments, const std::vector<int>& kept) {
   Model held = asked;
   for (int i : kept) held.parameters[i].free = false;

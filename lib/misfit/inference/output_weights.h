@@ -18,7 +18,7 @@ struct Weighing {
   double factor;  ///< of its sigma
 };
 
-/// Each output whose noise is not held with a fiftieth of its sigma and, of three or more, with fifty times; fewer than two: none.
+/// Each output whose noise is not given with a fiftieth of its sigma and, of three or more, with fifty times; fewer than two: none.
 [[nodiscard]] std::vector<Weighing> other_weighings(const Model& model);
 
 /// A maximum of the likelihood.

@@ -35,7 +35,7 @@ struct Recording {
   const InputTable& inputs;
 };
 
-/// Drifts and their derivatives along the motion, with own states held.
+/// Drifts and their derivatives along the motion, with own states fixed.
 class Along {
  public:
   explicit Along(const Recording& recording)

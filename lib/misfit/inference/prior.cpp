@@ -147,7 +147,7 @@ bool any_chosen(const std::vector<Penalty>& penalties) {
   return std::any_of(penalties.begin(), penalties.end(), [](const Penalty& p) { return p.chosen; });
 }
 
-std::vector<Penalty> with_weights_held(std::vector<Penalty> penalties) {
+std::vector<Penalty> with_fixed_weights(std::vector<Penalty> penalties) {
   for (Penalty& p : penalties) p.chosen = false;
   return penalties;
 }

@@ -77,7 +77,7 @@ struct GaussianPrior {
 /// Is a roughness weight among what is estimated?
 [[nodiscard]] bool any_chosen(const std::vector<Penalty>& penalties);
 /// The same weights, not to be estimated.
-[[nodiscard]] std::vector<Penalty> with_weights_held(std::vector<Penalty> penalties);
+[[nodiscard]] std::vector<Penalty> with_fixed_weights(std::vector<Penalty> penalties);
 
 /// log density of the model's free parameters at their present values.
 [[nodiscard]] double log_prior(const Model& model, const std::vector<Penalty>& penalties);

@@ -64,7 +64,7 @@ bool solve_penalised(const NormalEquations& problem, const PenaltyBasis& basis, 
   out.theta = out.covariance * b;
   const Eigen::VectorXd d = out.theta - problem.theta;
   out.rss = std::max(problem.rss + 2.0 * d.dot(problem.g) + d.dot(problem.N * d), 1e-300);
-  out.edf = (out.covariance * problem.N).trace() / sigma2 - problem.held;
+  out.edf = (out.covariance * problem.N).trace() / sigma2 - problem.constraints;
   out.sigma2 = sigma2;
   out.ok = true;
   return true;

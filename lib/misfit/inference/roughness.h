@@ -15,20 +15,20 @@ namespace misfit {
 /// A Gaussian linearisation of a fit: residuals r (unweighted sum of squares), N = JᵀJ, g = Jᵀr at θ, in units where one residual's
 /// variance is σ².
 struct NormalEquations {
-  Eigen::MatrixXd N;      ///< columns × columns
-  Eigen::VectorXd g;      ///< columns
-  double rss = 0.0;       ///< rᵀr
-  double count = 0.0;     ///< residuals
-  Eigen::VectorXd theta;  ///< columns: where it was made
-  ColumnPriors prior;     ///< of the columns
-  double held = 0.0;      ///< unknowns that N holds stiffly to a known value or to another unknown: not estimated
+  Eigen::MatrixXd N;         ///< columns × columns
+  Eigen::VectorXd g;         ///< columns
+  double rss = 0.0;          ///< rᵀr
+  double count = 0.0;        ///< residuals
+  Eigen::VectorXd theta;     ///< columns: where it was made
+  ColumnPriors prior;        ///< of the columns
+  double constraints = 0.0;  ///< unknowns that N ties stiffly to a known value or to another unknown: not estimated
 };
 
 struct PenalisedFit {
   Eigen::VectorXd theta;       ///< maximum of the penalised Gaussian
   Eigen::MatrixXd covariance;  ///< inverse of N/σ² + Σ λ Ω + priors
   double sigma2 = 0.0;         ///< residual variance, rss/(count − edf)
-  double edf = 0.0;            ///< effective number of parameters, tr(covariance N)/σ² without those held
+  double edf = 0.0;            ///< effective number of parameters, tr(covariance N)/σ² without those tied
   double rss = 0.0;            ///< at theta, by the linearisation
   bool ok = false;             ///< false: the information matrix is not positive definite
 };
@@ -71,11 +71,11 @@ struct PenaltyBasis {
 /// C(λ), θ(λ): covariance and maximum at that λ, θ: the maximum at the λ that are used, E: what residuals with memory add to N (empty:
 /// nothing). w: marginal likelihood of the linearised problem under a uniform prior of 1/sqrt(λ), the size of C'' [G], so that a curve that
 /// is a straight line to all that the data show keeps the band of the bends they cannot exclude. One λ at a time, in steps of sqrt(10), the
-/// others held; what each adds is summed. Without chosen λ: C + C E C.
+/// others fixed; what each adds is summed. Without chosen λ: C + C E C.
 [[nodiscard]] Eigen::MatrixXd with_uncertain_roughness(const NormalEquations& problem, const std::vector<Penalty>& penalties, double sigma2,
                                                        const Eigen::MatrixXd& excess = {});
 
-/// The maximum of the linearised problem along the λ of one penalty, the others held.
+/// The maximum of the linearised problem along the λ of one penalty, the others fixed.
 struct RoughnessPoints {
   int curve = -1;                      ///< index into Model::curves
   double used = 0.0;                   ///< the penalty's own λ

@@ -6,8 +6,8 @@
 namespace misfit {
 namespace {
 
-/// Coordinates held at a bound, and what pulls at each: (Σ_AA)⁻¹ (bound − centre).
-struct Held {
+/// Coordinates active at a bound, and what pulls at each: (Σ_AA)⁻¹ (bound − centre).
+struct ActiveBounds {
   std::vector<Eigen::Index> at;
   Eigen::VectorXd excess, pull;
 };
@@ -20,30 +20,30 @@ struct Bounds {
   const Eigen::VectorXd &lower, &upper;
 };
 
-Held hold(const Gaussian& density, const Bounds& bounds, const std::vector<int>& side) {
+ActiveBounds hold(const Gaussian& density, const Bounds& bounds, const std::vector<int>& side) {
   const auto& [centre, covariance] = density;
-  Held held;
+  ActiveBounds active;
   for (Eigen::Index i = 0; i < centre.size(); ++i) {
-    if (side[i] != 0) held.at.push_back(i);
+    if (side[i] != 0) active.at.push_back(i);
   }
-  held.excess.resize(held.at.size());
-  for (std::size_t k = 0; k < held.at.size(); ++k) {
-    const Eigen::Index i = held.at[k];
-    held.excess[k] = (side[i] < 0 ? bounds.lower[i] : bounds.upper[i]) - centre[i];
+  active.excess.resize(active.at.size());
+  for (std::size_t k = 0; k < active.at.size(); ++k) {
+    const Eigen::Index i = active.at[k];
+    active.excess[k] = (side[i] < 0 ? bounds.lower[i] : bounds.upper[i]) - centre[i];
   }
-  held.pull = covariance(held.at, held.at).ldlt().solve(held.excess);
-  return held;
+  active.pull = covariance(active.at, active.at).ldlt().solve(active.excess);
+  return active;
 }
 
-/// The held coordinate that its bound holds back least: the one to let go; −1 where each is held for a reason.
-Eigen::Index to_let_go(const Held& held, const std::vector<int>& side) {
+/// The active coordinate that its bound holds back least: the one to let go; −1 where each is active for a reason.
+Eigen::Index to_let_go(const ActiveBounds& active, const std::vector<int>& side) {
   Eigen::Index worst = -1;
   double most = 0.0;
-  for (std::size_t k = 0; k < held.at.size(); ++k) {
-    const double wrong = side[held.at[k]] * held.pull[k];
+  for (std::size_t k = 0; k < active.at.size(); ++k) {
+    const double wrong = side[active.at[k]] * active.pull[k];
     if (wrong > most) {
       most = wrong;
-      worst = held.at[k];
+      worst = active.at[k];
     }
   }
   return worst;
@@ -57,12 +57,12 @@ BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::Matrix
   std::vector<int> side(n, 0);  // −1: at its lower bound, 1: at its upper one
   for (Eigen::Index change = 0; change < 4 * n + 1; ++change) {
     BoundedMaximum out{centre, 0.0};
-    const Held held = hold({centre, covariance}, {lower, upper}, side);
-    if (!held.at.empty()) {
-      out.at += covariance(Eigen::all, held.at) * held.pull;
-      out.below = 0.5 * held.excess.dot(held.pull);
+    const ActiveBounds active = hold({centre, covariance}, {lower, upper}, side);
+    if (!active.at.empty()) {
+      out.at += covariance(Eigen::all, active.at) * active.pull;
+      out.below = 0.5 * active.excess.dot(active.pull);
     }
-    for (const Eigen::Index i : held.at) out.at[i] = side[i] < 0 ? lower[i] : upper[i];
+    for (const Eigen::Index i : active.at) out.at[i] = side[i] < 0 ? lower[i] : upper[i];
     bool inside = true;
     for (Eigen::Index i = 0; i < n; ++i) {
       if (out.at[i] >= lower[i] && out.at[i] <= upper[i]) continue;
@@ -70,7 +70,7 @@ BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::Matrix
       inside = false;
     }
     if (!inside) continue;
-    const Eigen::Index free = to_let_go(held, side);
+    const Eigen::Index free = to_let_go(active, side);
     if (free < 0) return out;
     side[free] = 0;
   }

@@ -45,7 +45,7 @@ class Stop final : public ceres::IterationCallback {
     if (stopped()) return false;
     try {
       return action();
-    } catch (const TimeSpent& spent) {
+    } catch (const TimeLimitReached& spent) {
       spent_ = spent.what();
     }
     return false;

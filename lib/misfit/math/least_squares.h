@@ -42,7 +42,8 @@ class LeastSquares {
     double cost = 0.0;       ///< ½ Σ ρ
     int iterations = 0;      ///< linearisations after the first
     int linearisations = 0;
-    bool out_of_time = false;  ///< a limit of time was spent (TimeSpent, whose words are the message): the blocks are the best so far
+    bool out_of_time =
+        false;  ///< a limit of time was spent (TimeLimitReached, whose words are the message): the blocks are the best so far
   };
   /// Throws Interrupted.
   [[nodiscard]] Summary solve(const Options& options);

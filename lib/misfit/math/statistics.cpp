@@ -90,6 +90,13 @@ double chi_square_tail(double x, double dof) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), x));
 }
 
+double log_chi_square_tail(double x, double dof) {
+  const double p = chi_square_tail(x, dof);
+  if (p > 1e-290) return std::log(p);
+  // Leading term of the upper incomplete gamma function: (x/2)^(dof/2 − 1) e^(−x/2)/Γ(dof/2).
+  return (0.5 * dof - 1.0) * std::log(0.5 * x) - 0.5 * x - std::lgamma(0.5 * dof);
+}
+
 double f_tail(double x, double dof1, double dof2) {
   if (std::isnan(x)) return nan_value;
   if (x <= 0.0) return 1.0;

@@ -37,6 +37,8 @@ struct MeanAndSigma {
 
 /// P(chi² with `dof` > 0 degrees of freedom > x); 1 for x ≤ 0, NaN for NaN. Accurate in the far tail (to about 1e-300).
 [[nodiscard]] double chi_square_tail(double x, double dof);
+/// Its logarithm, accurate where the probability underflows.
+[[nodiscard]] double log_chi_square_tail(double x, double dof);
 
 /// P(F with (dof1, dof2) degrees of freedom > x), both > 0; 1 for x ≤ 0, NaN for NaN.
 [[nodiscard]] double f_tail(double x, double dof1, double dof2);

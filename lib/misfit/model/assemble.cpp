@@ -72,8 +72,8 @@ std::map<std::string, std::string> Assembler::parameter_units() {
       if (!spec.coefficients[c].shared) units[names_[i][c]] = bind_unit(spec.coefficients[c].unit, roles);
     }
   }
-  for (const auto& [name, alias] : aliases_) {
-    if (units.contains(name)) units.emplace(alias, units.at(name));
+  for (const auto& [name, other] : other_names_) {
+    if (units.contains(name)) units.emplace(other, units.at(name));
   }
   return units;
 }
@@ -81,7 +81,7 @@ std::map<std::string, std::string> Assembler::parameter_units() {
 std::map<std::string, std::string> Assembler::parameter_names() {
   std::map<std::string, std::string> names;
   for (const auto& [name, unit] : parameter_units()) names[name] = name;
-  for (const auto& [name, alias] : aliases_) names[alias] = name;
+  for (const auto& [name, other] : other_names_) names[other] = name;
   return names;
 }
 
@@ -157,8 +157,8 @@ void Assembler::check_bounds(const Parameter& p, const Source& where) {
 
 const ParameterRequest* Assembler::parameter_request(const std::string& name) const {
   auto found = request_.parameters.find(name);
-  const auto alias = aliases_.find(name);
-  if (found == request_.parameters.end() && alias != aliases_.end()) found = request_.parameters.find(alias->second);
+  const auto other = other_names_.find(name);
+  if (found == request_.parameters.end() && other != other_names_.end()) found = request_.parameters.find(other->second);
   return found == request_.parameters.end() ? nullptr : &found->second;
 }
 

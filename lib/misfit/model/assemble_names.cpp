@@ -26,10 +26,10 @@ void Assembler::name_coefficients() {
       if (!effect(i).spec().coefficients[c].shared && uses[name] > 1) name = request_.effects[i].name + "." + name;
     }
   }
-  name_aliases();
+  find_other_names();
 }
 
-void Assembler::name_aliases() {
+void Assembler::find_other_names() {
   std::set<std::string> owned;
   for (const auto& constant : system().constants) owned.insert(constant.name);
   for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -40,8 +40,8 @@ void Assembler::name_aliases() {
       const bool prefixed = name.starts_with(prefix);
       const std::string bare = prefixed ? name.substr(prefix.size()) : name;
       const bool first = owned.insert(bare).second;
-      if (!prefixed) aliases_[name] = prefix + name;
-      if (prefixed && first) aliases_[name] = bare;
+      if (!prefixed) other_names_[name] = prefix + name;
+      if (prefixed && first) other_names_[name] = bare;
     }
   }
 }
@@ -89,8 +89,8 @@ std::vector<std::string> Assembler::owned_names() const {
 
 /// What the request calls the curve; its name in the model where nothing is requested of it.
 std::string Assembler::curve_in_request(const std::string& name) const {
-  const auto alias = aliases_.find(name);
-  return !request_.curves.contains(name) && alias != aliases_.end() && request_.curves.contains(alias->second) ? alias->second : name;
+  const auto other = other_names_.find(name);
+  return !request_.curves.contains(name) && other != other_names_.end() && request_.curves.contains(other->second) ? other->second : name;
 }
 
 std::optional<CurveRequest> Assembler::curve_request(const std::string& name, const CoefficientSpec& spec, const EffectRequest& by) const {

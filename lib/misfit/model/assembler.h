@@ -40,7 +40,7 @@ class Assembler {
   void name_coefficients();
   /// A study may use another name than the model does: the bare one for the first effect that owns it, so that adding a second effect of a
   /// kind leaves the lines of the first as they are; and EFFECT.NAME where the bare one would do.
-  void name_aliases();
+  void find_other_names();
   /// Shared coefficients, once all effects are bound: that of the first effect which owns one of the name.
   void share_coefficients();
   std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const;
@@ -103,7 +103,7 @@ class Assembler {
   const Registry& registry_;
   Model model_;
   std::vector<std::vector<std::string>> names_;
-  std::map<std::string, std::string> aliases_;  // name in the model → what a study may call it as well
+  std::map<std::string, std::string> other_names_;  // name in the model → what a study may call it as well
   std::set<const ParameterRequest*> used_parameters_;
   std::set<std::string> used_curves_;
   std::map<std::string, std::string> role_units_;  // of the effect being bound

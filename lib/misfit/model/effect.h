@@ -48,7 +48,8 @@ struct Role {
   const char* unit = "";
   bool optional = false;
   bool positive = false;  ///< the formula divides by it or takes its root: never 0 in use. At all others it must be regular at 0
-  /// An optional role that completes this one (the lateral part of a rate): where a study binds that one alone, this one is left out.
+  /// Of an optional role: the name of the one that it completes (the lateral part of a rate). Where a study binds that one alone, this one
+  /// is not bound.
   const char* completes = "";
   /// Of a role `displacement`: it may also stand for an input of the same unit, as for play between an actuator and what it moves.
   bool input_too = false;
@@ -69,6 +70,9 @@ struct ScanSpec {
   /// narrower than sqrt(π/2) times the filter's standard error of that quantity: the filter linearises at one point, and of a corner that
   /// is sharper than its state is known it would find too small a strength.
   bool smooths = false;
+
+  [[nodiscard]] constexpr bool is_frequency() const { return count < 0; }
+  [[nodiscard]] constexpr bool is_scanned() const { return count != 0; }
 };
 
 /// A shape that can be read off the measurements of the output that the effect reads, instead of being scanned.
@@ -94,7 +98,7 @@ struct CoefficientSpec {
   bool over_sine = false;  ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;      ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
-  /// Of a shape that is the drift of another coefficient [its unit/s]: the name of that one. It is held at 0 unless the study frees it, or
+  /// Of a shape that is the drift of another coefficient [its unit/s]: the name of that one. It is fixed at 0 unless the study frees it, or
   /// discovery, where that raises the likelihood clearly.
   const char* drift_of = "";
   OfMeasurements measured_as = OfMeasurements::none;  ///< discovery refuses a `step` of which the measurements are no multiples

@@ -33,7 +33,7 @@ std::vector<LateInputUse> Model::late_inputs() const {
   return out;
 }
 
-bool Model::noise_held() const {
+bool Model::noise_is_given() const {
   return std::all_of(known_noise.begin(), known_noise.end(), [](const KnownNoise& noise) { return noise.fixed; });
 }
 

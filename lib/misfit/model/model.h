@@ -63,7 +63,7 @@ struct ModelRequest {
     Source where;
   };
   std::map<std::string, NoiseRequest> noise;  ///< of outputs
-  std::optional<double> force_time;           ///< of the random force [s], held; 0: white
+  std::optional<double> force_time;           ///< of the random force [s], fixed; 0: white
   std::optional<KnownForce> force_strength;   ///< its prior
 };
 
@@ -113,7 +113,7 @@ struct BoundEffect {
 /// What is known of the white measurement noise of an output.
 struct KnownNoise {
   double sigma = 0.0;  ///< [unit of the output]; 0: nothing
-  bool fixed = false;  ///< held in every fit; else a start
+  bool fixed = false;  ///< fixed in every fit; else a start
 };
 
 /// An input whose past an effect reads: Role::late_by.
@@ -132,7 +132,7 @@ struct Model {
   /// States of the system with what the study says of their initial values; own states of effects are not among them.
   std::vector<StateSpec> state_specs;
   std::vector<KnownNoise> known_noise;  ///< per output
-  std::optional<double> force_time;     ///< correlation time of the random force [s], held; 0: white
+  std::optional<double> force_time;     ///< correlation time of the random force [s], fixed; 0: white
   std::optional<KnownForce> force_strength;
   std::vector<OwnStateSpec> own_states;
   std::vector<std::string> own_state_names;  ///< "effect.state"
@@ -144,7 +144,7 @@ struct Model {
   [[nodiscard]] int inputs() const { return int_size(system->spec().inputs); }
   [[nodiscard]] int input_of_quantity(int quantity) const;  ///< the input of its name; −1: it is none
   [[nodiscard]] std::vector<LateInputUse> late_inputs() const;
-  [[nodiscard]] bool noise_held() const;                   ///< of every output: nothing of it is estimated
+  [[nodiscard]] bool noise_is_given() const;               ///< of every output: nothing of it is estimated
   [[nodiscard]] std::vector<double> values() const;        ///< of all parameters
   [[nodiscard]] std::vector<int> free_parameters() const;  ///< index into `parameters` of each column
   [[nodiscard]] Eigen::VectorXd theta() const;             ///< values of the free parameters, in that order
@@ -159,8 +159,8 @@ struct Model {
 /// curve must have knots by now. A coefficient is called by its own name, or EFFECT.NAME where two effects of the model would share it.
 [[nodiscard]] Model assemble(const ModelRequest& request, const Registry& registry);
 
-/// Curves of the model that still need knots (name → quantity), before assembling: from `request.curves` and the effects' defaults. The name
-/// is that of `request.curves` if the curve stands there, else that in the model; parameter_names() knows both.
+/// Curves of the model that still need knots (name → quantity), before assembling: from `request.curves` and the effects' defaults. The
+/// name is that of `request.curves` if the curve stands there, else that in the model; parameter_names() knows both.
 [[nodiscard]] std::map<std::string, std::string> curves_without_knots(const ModelRequest& request, const Registry& registry);
 
 /// Unit of every parameter and curve by its name in the model to be, before assembling: to read values that a study writes with units.

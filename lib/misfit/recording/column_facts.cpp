@@ -83,7 +83,7 @@ bool is_integer(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return v == std::round(v); });
 }
 
-double share_held(const std::vector<double>& values) {
+double repeat_share(const std::vector<double>& values) {
   std::size_t equal = 0, pairs = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (!std::isfinite(values[i]) || !std::isfinite(values[i - 1])) continue;

@@ -19,7 +19,9 @@
 #include "misfit/math/statistics.h"
 #include "misfit/recording/column_facts.h"
 #include "misfit/recording/log_columns.h"
+#include "misfit/recording/rates.h"
 #include "misfit/recording/recording_time.h"
+#include "misfit/recording/time_column.h"
 
 namespace misfit {
 namespace {
@@ -97,13 +99,13 @@ class ColumnClassifier {
     const auto [low, high] = std::minmax_element(known.begin(), known.end());
     s.low = *low;
     s.high = *high;
-    s.held = share_held(column.values);
+    s.repeat_share = repeat_share(column.values);
     if (s.low == s.high) {
       s.use = ColumnUse::constant;
       s.why = "never changes: " + format_value(s.low);
     } else {
       s.resolution = resolution_of(known);
-      s.jumps = s.held > held_share && !is_coarsely_digitised(column.values, s.resolution);
+      s.is_stepwise = s.repeat_share > stepwise_share && !is_coarsely_digitised(column.values, s.resolution);
     }
     if (s.missing > 0)
       out_.remarks.push_back(fmt::format("column '{}': {} of {} values are missing", s.header, s.missing, column.values.size()));
@@ -120,17 +122,6 @@ class ColumnClassifier {
         out_.remarks.push_back(
             fmt::format("column '{}' is called {}: the word {} means something else in formulas", c.header, c.name, wanted));
     }
-  }
-
-  /// Share of the steps that run forward; of those that are no stand, where several rows may have one time.
-  double forward(std::size_t column, bool stands_count = true) const {
-    const std::vector<double> t = finite(values(column));
-    std::size_t count = 0, steps = 0;
-    for (std::size_t i = 1; i < t.size(); ++i) {
-      count += t[i] > t[i - 1] ? 1U : 0U;
-      steps += stands_count || t[i] != t[i - 1] ? 1U : 0U;
-    }
-    return steps == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(steps);
   }
 
   /// The column of that header or name.
@@ -151,47 +142,17 @@ class ColumnClassifier {
     fail(0, option + ": no column '" + shown(name) + "'" + suggest(name, names));
   }
 
-  /// How surely a column is time, 0 the surest; nullopt: it is none. "T" without a unit may as well be a temperature.
-  std::optional<int> rank_of_time(std::size_t i) const {
-    const ColumnSurvey& c = out_.columns[i];
-    const bool of_time = parse_unit(c.unit).same_dimension(parse_unit("s"));
-    const bool called = is_called_time(c.name) && (of_time || c.unit == "-");
-    if (c.use != ColumnUse::unused || !(of_time || called)) return std::nullopt;
-    const double rows = forward(i), steps = forward(i, false);
-    if (called && (of_time || !may_be_temperature(c.name)) && steps > min_forward_share) return 0;
-    if (of_time && rows == 1.0) return 1;
-    if (called && rows == 1.0) return 2;
-    if (of_time && rows > min_forward_share) return 3;
-    if (called && steps > min_forward_share) return 4;
-    return std::nullopt;
-  }
-
-  /// " ('n' counts rows, …": the first column that does, for the message that none is time.
-  std::string counter() const {
-    for (std::size_t i = 0; i < out_.columns.size(); ++i) {
-      if (out_.columns[i].use == ColumnUse::unused && forward(i) == 1.0 && is_integer(finite(values(i))))
-        return " ('" + out_.columns[i].header + "' counts rows, but over which interval?)";
-    }
-    return "";
-  }
-
   /// The first of the surest; of a log the one that its rows are of.
   void find_time() {
     if (of_log_) time_ = 0;
     const bool given = !of_log_ && !choice_.time.empty();
     if (given) time_ = column_named(choice_.time, "--time");
-    if (given && (out_.columns[time_].use != ColumnUse::unused || !(forward(time_) > min_forward_share)))
+    if (given && (out_.columns[time_].use != ColumnUse::unused || !(increasing_share(values(time_)) > least_increasing_share)))
       fail(0, fmt::format("column '{}' is no time: it does not run forward", out_.columns[time_].header));
-    std::optional<int> surest;
-    for (std::size_t i = 0; i < out_.columns.size() && !given && !of_log_; ++i) {
-      const std::optional<int> rank = rank_of_time(i);
-      if (!rank || (surest && *rank >= *surest)) continue;
-      surest = rank;
-      time_ = i;
-    }
+    if (!given && !of_log_) time_ = surest_time(out_.columns, table_).value_or(none);
     if (time_ == none) {
       fail(0, std::string("no column of time: none is called t or time, or is in s, ms, min or h, or holds dates, and increases") +
-                  counter() + "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
+                  counting_column(out_.columns, table_) + "; write one as t[s], or dates as 2024-03-01 00:10:00 or 01.03.2024 00:10");
     }
     ColumnSurvey& c = out_.columns[time_];
     c.use = ColumnUse::time;
@@ -227,7 +188,7 @@ class ColumnClassifier {
   /// Of the first column called segment, id, run or the like; one that only counts rows is passed over, and an on/off signal, whose numbers
   /// come again while time runs on, is none.
   void find_segments() {
-    const bool time_runs_on = forward(time_) == 1.0;
+    const bool time_runs_on = increasing_share(values(time_)) == 1.0;
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
       if (c.use != ColumnUse::unused || !is_called_segment(c.name) || !is_integer(finite(values(i)))) continue;
@@ -260,10 +221,10 @@ class ColumnClassifier {
         ColumnSurvey& c = out_.columns[column_named(name, option)];
         if (c.use == ColumnUse::constant || c.use == ColumnUse::text || c.use == ColumnUse::time)
           fail(0, fmt::format("column '{}', named by {}, is no signal: {}", c.header, option, c.why));
-        if (c.chosen && c.use != use)
+        if (c.chosen_by_user && c.use != use)
           fail(0, fmt::format("column '{}' is named by --input and by --output: it can be one of them", c.header));
         c.use = use;
-        c.chosen = true;
+        c.chosen_by_user = true;
         c.why = fmt::format("named by {}", option);
       }
     }
@@ -276,7 +237,7 @@ class ColumnClassifier {
     }
   }
 
-  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.jumps; }
+  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.is_stepwise; }
 
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
@@ -292,9 +253,9 @@ class ColumnClassifier {
       if (may_be_input && is_called_input(c.name)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
-      } else if (may_be_input && c.jumps) {
+      } else if (may_be_input && c.is_stepwise) {
         c.use = ColumnUse::input;
-        c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.held);
+        c.why = fmt::format("constant between jumps ({:.0f} % of its samples equal the one before)", 100.0 * c.repeat_share);
       } else {
         c.use = ColumnUse::output;
         c.why = open.size() == 1 ? "the only column that was measured" : "not named like an input, and it varies";
@@ -303,18 +264,18 @@ class ColumnClassifier {
     }
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       ColumnSurvey& c = out_.columns[i];
-      c.measured = c.use == ColumnUse::input && is_smooth(values(i));
+      c.is_measured_input = c.use == ColumnUse::input && is_smooth(values(i));
     }
     if (!of_use(ColumnUse::output).empty()) return;
     const auto unlike = std::find_if(open.rbegin(), open.rend(), [this](std::size_t i) { return !is_called_input(out_.columns[i].name); });
     ColumnSurvey& last = out_.columns[unlike == open.rend() ? open.back() : *unlike];
     last.use = ColumnUse::output;
-    last.measured = false;
+    last.is_measured_input = false;
     last.why = fmt::format("every column looks like an input; the last{} is taken as the output",
                            unlike == open.rend() ? "" : " that is not called like one");
   }
 
-  /// An output that is another's derivative: correlated to better than 0.99 with its central difference, with a slope within 10 % of 1.
+  /// An output that is another's derivative.
   void find_rates() {
     for (std::size_t i = 0; i < out_.columns.size(); ++i) {
       for (std::size_t j = 0; j < out_.columns.size() && out_.columns[i].use == ColumnUse::output; ++j) {
@@ -377,40 +338,11 @@ class ColumnClassifier {
     return "the unit '" + unit + "' is not known, ";
   }
 
-  /// With differences over 1, 2, 4 … samples: noise hides the derivative of what is sampled quickly.
-  bool is_rate(std::size_t rate, std::size_t of) const {
-    constexpr std::size_t longest = 64;
-    for (std::size_t span = 1; span <= longest && 40 * span < table_.rows(); span *= 2) {
-      if (is_rate_over(span, rate, of)) return true;
-    }
-    return false;
-  }
-
-  bool is_rate_over(std::size_t span, std::size_t rate, std::size_t of) const {
-    const Unit a = parse_unit(out_.columns[rate].unit), b = parse_unit(rate_unit(out_.columns[of].unit));
-    if (out_.columns[rate].unit != "-" && !a.same_dimension(b)) return false;
-    const double factor = out_.columns[rate].unit == "-" ? 1.0 : b.to_si / a.to_si;
-    double xx = 0.0, xy = 0.0, yy = 0.0;
-    for (const auto& piece : pieces_) {
-      for (std::size_t k = span; k + span < piece.size(); ++k) {
-        const double x = factor * (values(of)[piece[k + span]] - values(of)[piece[k - span]]) / (t_[piece[k + span]] - t_[piece[k - span]]);
-        const double y = mean_between(rate, piece[k - span], piece[k + span]);
-        if (!std::isfinite(x) || !std::isfinite(y)) continue;
-        xx += x * x;
-        xy += x * y;
-        yy += y * y;
-      }
-    }
-    constexpr double alike = 0.98, near_one = 0.1;
-    return xx > 0.0 && yy > 0.0 && xy * xy > alike * xx * yy && std::abs(xy / xx - 1.0) < near_one;
-  }
-
-  /// Trapezium rule over the rows from … to, as of equal intervals.
-  double mean_between(std::size_t column, std::size_t from, std::size_t to) const {
-    if (to - from == 2) return values(column)[from + 1];
-    double sum = 0.5 * (values(column)[from] + values(column)[to]);
-    for (std::size_t i = from + 1; i < to; ++i) sum += values(column)[i];
-    return sum / static_cast<double>(to - from);
+  bool is_rate(std::size_t rate, std::size_t level) const {
+    const Unit own = parse_unit(out_.columns[rate].unit), derived = parse_unit(rate_unit(out_.columns[level].unit));
+    const bool no_unit = out_.columns[rate].unit == "-";
+    if (!no_unit && !own.same_dimension(derived)) return false;
+    return is_rate_of(values(rate), values(level), no_unit ? 1.0 : derived.to_si / own.to_si, {t_, pieces_});
   }
 
   /// Columns that nobody uses are given back first: of a long recording only those that are used are held twice.
@@ -441,8 +373,7 @@ class ColumnClassifier {
   std::vector<std::string> not_understood_;  ///< unit in the header, per column; empty: known, or none, or found out
   std::vector<bool> of_one_letter_;          ///< per column: its unit is the last letter of its name
   static constexpr std::size_t longest_name = 64, longest_header = 80;  // bytes
-  static constexpr double held_share = 0.5;                             // of the samples of what jumps
-  static constexpr double min_forward_share = 0.5;                      // of a time
+  static constexpr double stepwise_share = 0.5;                         // of the samples of what jumps
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   LooseTable table_;
   std::set<std::string> taken_;  // names that are reserved or given

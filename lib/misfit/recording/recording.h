@@ -21,12 +21,12 @@ struct ColumnSurvey {
   std::string why;  ///< of the use, in words
   std::size_t missing = 0;
   double low = 0.0, high = 0.0;
-  double resolution = 0.0;  ///< all values are multiples of it apart [unit]; 0: no such step found
-  double held = 0.0;        ///< share of samples equal to the one before
-  bool jumps = false;       ///< held for most samples, as a command, and not a measurement whose last digit changes slowly
-  bool chosen = false;      ///< its use is the user's choice
-  bool measured = false;    ///< an input that is no command held between samples: it changes smoothly, or nothing in the file moves it
-  std::string rate_of;      ///< rate: name of the column whose derivative it is
+  double resolution = 0.0;         ///< all values are multiples of it apart [unit]; 0: no such step found
+  double repeat_share = 0.0;       ///< of samples equal to the one before
+  bool is_stepwise = false;        ///< constant for most samples, as a command, and not a measurement whose last digit changes slowly
+  bool chosen_by_user = false;     ///< its use is the user's choice
+  bool is_measured_input = false;  ///< no command that stays constant between samples: it changes smoothly, or nothing in the file moves it
+  std::string rate_of;             ///< rate: name of the column whose derivative it is
 };
 
 /// An interval in which no sample was taken.

@@ -12,7 +12,7 @@ namespace misfit::report {
 /// ± 1.96 sigma of the fit. Only where the fit's curve is visited.
 [[nodiscard]] Figure bootstrap_figure(const std::string& curve, const std::vector<Bootstrap>& bootstraps);
 
-/// Drop of the likelihood against the value held, over its scale, with the drop of 3.84 that ends the 95 % interval, the interval, and,
+/// Drop of the likelihood against the fixed value, over its scale, with the drop of 3.84 that ends the 95 % interval, the interval, and,
 /// dotted, the parabola of the fit's sigma. Angles in degrees.
 [[nodiscard]] Figure profile_figure(const LikelihoodProfile& profile);
 

@@ -114,8 +114,8 @@ class VerdictBuilder {
     } else {
       nothing_accepted(*in_.discovery);
     }
-    if (fit_ != nullptr && in_.discovery != nullptr && in_.discovery->held && out_.kind != VerdictKind::calibration)
-      out_.sentence += " " + as_sentence("but " + in_.discovery->held->front());
+    if (fit_ != nullptr && in_.discovery != nullptr && in_.discovery->fixed_parameters && out_.kind != VerdictKind::calibration)
+      out_.sentence += " " + as_sentence("but " + in_.discovery->fixed_parameters->front());
     return out_;
   }
 
@@ -285,7 +285,7 @@ class VerdictBuilder {
   }
   void nothing_missing(const Discovery& d) {
     const auto effects = std::count_if(d.candidates.begin(), d.candidates.end(),
-                                       [](const Candidate& c) { return c.family != CandidateFamily::unknown && !c.described; });
+                                       [](const Candidate& c) { return c.family != CandidateFamily::unknown && !c.absorbed; });
     const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", effects);
     auto forces = fit_->driven ? force_strengths(fit_->force) : std::vector<ForceStrength>{};
     constexpr double sigmas = 2.0;

@@ -25,10 +25,10 @@ struct VerdictInput {
   const Ladder* ladder = nullptr;
 };
 
-/// In this order: no usable fit; a calibration that its own sweep contradicts; a search that was not finished; an effect that discovery
-/// accepts, alone or one of several; a dependence that no effect explains; candidates that were rejected; what the ladder has added;
-/// nothing found missing. Without a search: what the residuals and the diagnosis say. Errors before and after are those of the first and
-/// the last rung of the ladder, else of the model without and with the effect that discovery names, else of the fit.
+/// In this order: no usable fit; a calibration that its own sweep contradicts (once discover has asked); an effect that discovery accepts,
+/// alone or one of several; a search that was not finished; a dependence that no effect explains; candidates that were rejected; what the
+/// ladder has added; nothing found missing. Without a search: what the residuals and the diagnosis say. Errors before and after are those
+/// of the first and the last rung of the ladder, else of the model without and with the effect that discovery names, else of the fit.
 [[nodiscard]] Verdict verdict_of(const VerdictInput& input);
 
 /// The box at the end of what a terminal shows and at the beginning of a report: sentence, errors, next command.

@@ -25,7 +25,7 @@ using FitReplica = std::function<Fit(const std::vector<Signals>&)>;
 
 /// Block bootstrap of a fit: every run draws replicas of the experiments (Resampler) and fits them. A run depends on the seed and its own
 /// number alone. What it says: scatter by noise with its memory, through the whole nonlinear estimation; not: the bias by roughness, priors
-/// (they are held), or errors of the rig (Monte-Carlo).
+/// (they are fixed), or errors of the rig (Monte-Carlo).
 class BlockBootstrap {
  public:
   /// Keeps references to `fit` and `experiments`. InputError: fewer than 2 runs, and what Resampler throws.

@@ -95,7 +95,7 @@ class Search {
 
   const ProfileRequest& request_;
   double direction_, limit_;
-  HeldMaximum held_;
+  MaximumAtFixedValue held_;
   Side side_;
 };
 

@@ -12,10 +12,10 @@
 
 namespace misfit {
 
-/// The penalised log-likelihood at its maximum over everything but one parameter, which is held at the value given; nullopt where the model
-/// cannot be run or the search did not end. Called with values that move away from the estimate step by step, so that each maximum starts
-/// from the one before. One object per side: it may keep what it found.
-using HeldMaximum = std::function<std::optional<double>(double value)>;
+/// The penalised log-likelihood at its maximum over everything but one parameter, which is fixed at the value given; nullopt where the
+/// model cannot be run or the search did not end. Called with values that move away from the estimate step by step, so that each maximum
+/// starts from the one before. One object per side: it may keep what it found.
+using MaximumAtFixedValue = std::function<std::optional<double>(double value)>;
 
 /// One parameter to look at.
 struct ProfileRequest {
@@ -23,8 +23,8 @@ struct ProfileRequest {
   double best = 0.0;       ///< the estimate
   double objective = 0.0;  ///< penalised log-likelihood there
   double sigma = 0.0, plain_sigma = 0.0;
-  double lower = 0.0, upper = 0.0;         ///< bounds of the parameter
-  std::function<HeldMaximum()> from_best;  ///< a fresh search that starts from the estimate; called once per side, from any thread
+  double lower = 0.0, upper = 0.0;                 ///< bounds of the parameter
+  std::function<MaximumAtFixedValue()> from_best;  ///< a fresh search that starts from the estimate; called once per side, from any thread
 };
 
 /// Steps the parameter away on both sides, half a sigma at a time, everything else estimated anew, until the drop 2 [log L(best) −

@@ -101,7 +101,7 @@ struct Gain {
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   FilterOptions options;
   options.threads = threads;
-  options.around = parent.estimate->around;
+  options.reference = parent.estimate->reference;
   options.choose_roughness = false;
   options.use = common_use(*parent.estimate, *child.estimate);
   const FilterStart parents{parent.estimate->model, parent.estimate->penalties, parent.estimate->noise};
@@ -113,7 +113,7 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   if (!off.empty()) starts.push_back({off.front().model, penalties, off.front().noise});
   options.plans = plans_of(without);
   const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
-  if (without.out_of_time || with.out_of_time) throw TimeSpent(Watch::current()->words());
+  if (without.out_of_time || with.out_of_time) throw TimeLimitReached(Watch::current()->words());
   Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
   if (parent.fit.validation_loglik) gain.held_out = predictive_loglik(with) - predictive_loglik(without);
   return gain;
@@ -130,7 +130,7 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
     const Gain gain = gain_of(child, parent, threads);
     rung.actual_drop = gain.drop;
     rung.held_out_gain = gain.held_out;
-  } catch (const TimeSpent& spent) {
+  } catch (const TimeLimitReached& spent) {
     append_note(rung.note, std::string("no actual drop: ") + spent.what());
   } catch (const RunError& error) {  // the rung's own fit is valid without the comparison
     append_note(rung.note, std::string("no actual drop: ") + error.what());
@@ -151,7 +151,7 @@ std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
 }
 
 /// "c is held at 0.5 1/s: the curve takes over what it does".
-std::string held_in_words(const std::map<std::string, Estimate>& held) {
+std::string fixed_parameters_in_words(const std::map<std::string, Estimate>& held) {
   std::string out;
   for (const auto& [name, e] : held)
     out += (out.empty() ? "" : "; ") + name + " is held at " + in_display_unit(e.value, e.unit) + ": the curve takes over what it does";
@@ -320,7 +320,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   } else {
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
-    if (from) append_note(rung.note, held_in_words(from->held));
+    if (from) append_note(rung.note, fixed_parameters_in_words(from->held));
     if (from) rung.roles = from->roles;
     if (from) rung.also = from->also;
     if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));

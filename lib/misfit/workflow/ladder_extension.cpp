@@ -46,10 +46,10 @@ Candidate without_refit(Candidate candidate) {
   return candidate;
 }
 
-/// It holds nothing that the model does not have: what it held may have left with another effect.
+/// It fixes nothing that the model does not have: what it fixed may have left with another effect.
 Candidate as_in(const Session& session, Candidate candidate) {
   const Model model = provisional_model(session.model.request, session.registry);
-  std::erase_if(candidate.held, [&](const auto& held) {
+  std::erase_if(candidate.fixed_in_model, [&](const auto& held) {
     return std::none_of(model.parameters.begin(), model.parameters.end(), [&](const Parameter& p) { return p.name == held.first; });
   });
   return candidate;
@@ -177,8 +177,8 @@ class Extension {
     return false;
   }
 
-  /// The first whose width was held at what the filter could resolve before it, and the later ones, were there, and which has another one
-  /// now, gets that: held at the wrong one, an effect makes room for others that are not there. False: there is none.
+  /// The first whose width was fixed at what the filter could resolve before it, and the later ones, were there, and which has another one
+  /// now, gets that: fixed at the wrong one, an effect makes room for others that are not there. False: there is none.
   bool one_is_sharper() {
     for (std::size_t k = 0; k < added_.size(); ++k) {
       if (added_[k].width_freed) continue;

@@ -36,7 +36,7 @@ std::string free_name(const std::vector<EffectRequest>& effects, const std::stri
 EffectStart start_found(const Effect& effect, const Candidate& from) {
   EffectStart start{{}, from.free, from.fixed};
   for (const auto& c : effect.spec().coefficients) {
-    const bool scanned_shape = c.scan.count != 0 && c.kind == CoefficientKind::shape;
+    const bool scanned_shape = c.scan.is_scanned() && c.kind == CoefficientKind::shape;
     if (c.shared || c.over_sine || (!scanned_shape && !from.actual_drop)) continue;  // over a sine: a curve, discovery's number is C/sin
     for (const auto& [name, estimate] : from.parameters) {
       if (name == c.name || name.ends_with(std::string(".") + c.name)) start.values[c.name] = estimate.value;
@@ -45,7 +45,7 @@ EffectStart start_found(const Effect& effect, const Candidate& from) {
   return start;
 }
 
-/// The study's text with these parameters of the model held at these values.
+/// The study's text with these parameters of the model fixed at these values.
 std::string with_held(std::string text, const Session& session, const ModelRequest& model, const std::map<std::string, Estimate>& held) {
   const std::map<std::string, std::string> names = parameter_names(model, session.registry);
   for (const auto& [name, estimate] : held) {

@@ -46,8 +46,8 @@ ContainedFit contained_fit(const FilterEstimate& estimate) {
     for (SampleRole role : data.use) out.use.back() += letter_of(role);
   }
   const SystemSpec& spec = estimate.model.system->spec();
-  out.noise = pack(estimate.noise, spec, estimate.around).value;
-  out.usual_noise = pack(estimate.around, spec, estimate.around).value;
+  out.noise = pack(estimate.noise, spec, estimate.reference).value;
+  out.usual_noise = pack(estimate.reference, spec, estimate.reference).value;
   return out;
 }
 

@@ -21,7 +21,7 @@ namespace misfit {
 /// may have the effect's.
 [[nodiscard]] std::vector<Penalty> with_weights_of(const FilterEstimate& estimate, const Model& model, std::vector<Penalty> penalties);
 
-/// FilterOptions::around as of the fit, with what the study of `model` knows of the noise.
+/// FilterOptions::reference as of the fit, with what the study of `model` knows of the noise.
 [[nodiscard]] FilterNoise usual_noise_of(const ContainedFit& contained, const Model& model);
 
 /// FilterOptions::use as of the fit, without what is missing in these experiments; nullopt where they are others.

@@ -8,8 +8,8 @@ namespace misfit {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
-  auto& [white, coloured, coloured_frequency, coloured_damping, held, no_coloured] = data;
-  bytes(white, coloured, coloured_frequency, coloured_damping, held, no_coloured);
+  auto& [white, coloured, coloured_frequency, coloured_damping, given, no_coloured] = data;
+  bytes(white, coloured, coloured_frequency, coloured_damping, given, no_coloured);
 }
 
 template <class Bytes>
@@ -20,8 +20,8 @@ void fields(Bytes& bytes, MaybeConst<ForcePrior> auto& data) {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterNoise> auto& data) {
-  auto& [force, force_time, channels, time_held, further_forces, prior] = data;
-  bytes(force, force_time, channels, time_held, further_forces, prior);
+  auto& [force, force_time, channels, time_is_given, further_forces, prior] = data;
+  bytes(force, force_time, channels, time_is_given, further_forces, prior);
 }
 
 template <class Bytes>
@@ -86,12 +86,12 @@ void fields(Bytes& bytes, MaybeConst<FilterJacobian> auto& data) {
 /// All but the models.
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterEstimate> auto& estimate) {
-  auto& [model, forced, penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
+  auto& [model, forced, penalties, noise, reference, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
          objective, loglik, validation_loglik, newton_decrement, edf, converged, out_of_time, message, notes, integration, outliers,
          nonlinear, linearisations] = estimate;
   static_cast<void>(model);
   static_cast<void>(forced);
-  bytes(penalties, noise, around, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information, objective, loglik,
+  bytes(penalties, noise, reference, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information, objective, loglik,
         validation_loglik, newton_decrement, edf, converged, out_of_time, message, notes, integration, outliers, nonlinear, linearisations);
 }
 

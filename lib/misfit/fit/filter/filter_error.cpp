@@ -14,7 +14,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/data/estimators.h"
 #include "misfit/data/ladder.h"
-#include "misfit/fit/filter/noise_interval.h"
+#include "misfit/fit/filter/noise_report.h"
 #include "misfit/fit/filter/settled.h"
 #include "misfit/fit/filter/slow_force.h"
 #include "misfit/inference/curve_freedom.h"
@@ -42,96 +42,6 @@ RowMatrix visited_by_filter(const FilterEstimate& estimate) {
       evaluator.quantities(estimate.traces[e].filtered(k).data(), data.inputs.at(k), data.signals->t[k], out.row(row++).data());
   }
   return out;
-}
-
-/// Standard deviations of the logarithms of the noise parameters; 0 where a parameter sits at its bound or is not determined.
-std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
-  const NoiseFit& fit = estimate.noise_fit;
-  Eigen::MatrixXd information = fit.information;
-  const std::vector<bool> known = pin_unknown(fit, information);
-  const Eigen::Index q = information.rows();
-  const Eigen::MatrixXd covariance = estimate.joint_covariance.size() > 0
-                                         ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
-                                         : Eigen::MatrixXd(information.inverse());
-  std::vector<double> out;
-  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
-    out.push_back(known[i] && !pinned(covariance(i, i)) ? standard_error(covariance, i) : 0.0);
-  return out;
-}
-
-void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
-  const SystemSpec& spec = estimate.model.system->spec();
-  const NoiseVector vector = pack(estimate.noise, spec, estimate.around);
-  const std::vector<double> sigmas = noise_sigmas(estimate);
-  const auto as_estimate = [&](std::size_t i, const std::string& unit) {
-    const double value = std::exp(vector.value[i]);
-    return Estimate{value, value * sigmas[i], unit};
-  };
-  const auto intervals = noise_intervals(estimate, {0, 1}, threads);
-  for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
-    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[i]];
-    const std::size_t at = place_of_force(estimate.forced.force_group[i], spec);
-    fit.force[named.name] = as_estimate(at, named.unit);
-    if (at == 0) fit.force[named.name].interval = intervals[0];
-    fit.driven = fit.driven || sigmas[at] > 0.0;
-  }
-  fit.force["correlation_time"] = as_estimate(1, "s");
-  fit.force["correlation_time"].interval = intervals[1];
-  if (!fit.driven) fit.facts["random_force"] = "no random force is determined by these data: the motion counts as not driven";
-  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
-    const std::string& name = spec.outputs[o].name;
-    const std::string& unit = spec.outputs[o].unit;
-    fit.noise[name] = as_estimate(2 + 4 * o, unit);
-    if (!(sigmas[3 + 4 * o] > 0.0)) {
-      fit.facts["coloured noise of " + name] = "not determined by these data: the measurement noise counts as white";
-      continue;
-    }
-    fit.noise[name + "_coloured"] = as_estimate(3 + 4 * o, unit);
-    fit.noise[name + "_coloured_frequency"] = as_estimate(4 + 4 * o, "Hz");
-    fit.noise[name + "_coloured_damping"] = as_estimate(5 + 4 * o, "-");
-  }
-}
-
-/// A part of the noise model in words, and whether its lower bound means that it is not there, which is said elsewhere.
-struct NoisePart {
-  std::size_t at;  ///< in pack()
-  std::string words, unit;
-  bool absent_at_lower;
-};
-
-/// Those that the fit has found; `fit`: with noise and force.
-std::vector<NoisePart> noise_parts(const FilterEstimate& estimate, const Fit& fit) {
-  const SystemSpec& spec = estimate.model.system->spec();
-  std::vector<NoisePart> out;
-  for (int group = 0; group < estimate.forced.force_groups(); ++group) {
-    const auto port = std::find(estimate.forced.force_group.begin(), estimate.forced.force_group.end(), group);
-    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[port - estimate.forced.force_group.begin()]];
-    out.push_back({place_of_force(group, spec), std::string("the random force on ") + named.name, named.unit, true});
-  }
-  if (fit.driven) out.push_back({1, "the correlation time of the random force", "s", false});
-  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
-    const std::string of = std::string(" noise of ") + spec.outputs[o].name;
-    out.push_back({2 + 4 * o, "the white" + of, spec.outputs[o].unit, false});
-    out.push_back({3 + 4 * o, "the coloured" + of, spec.outputs[o].unit, true});
-    if (!fit.noise.contains(spec.outputs[o].name + "_coloured")) continue;
-    out.push_back({4 + 4 * o, "the frequency of the coloured" + of, "Hz", false});
-    out.push_back({5 + 4 * o, "the damping of the coloured" + of, "-", false});
-  }
-  return out;
-}
-
-/// The bounds of pack() keep a search away from where nothing is determined: an estimate there is none.
-void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
-  constexpr double nearest = 1e-3;  // of the logarithm
-  const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
-  for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate, fit)) {
-    if (vector.upper[at] - vector.lower[at] < nearest) continue;  // held by the study
-    const bool lower = vector.value[at] - vector.lower[at] < nearest, upper = vector.upper[at] - vector.value[at] < nearest;
-    if (!upper && (!lower || absent_at_lower)) continue;
-    fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
-                           in_display_unit(std::exp(vector.value[at]), unit) +
-                           ": the likelihood still rises beyond it, so that this is no estimate");
-  }
 }
 
 /// Sum of squares of one-step prediction errors, settled ones (settled.h), and how many.
@@ -320,7 +230,8 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
   }
 }
 
-/// What is estimated beside the free parameters: initial states of the system in every experiment, but for known ones, and the noise.
+/// What is estimated beside the free parameters: initial states of the system in every experiment, but for known ones, and the noise. A
+/// state of which something is known beforehand counts in full: degrees of freedom are rather too few.
 double unknowns_beside_parameters(const FilterEstimate& estimate) {
   double states = 0.0;
   for (const FilterData& data : estimate.data)
@@ -432,24 +343,24 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   return fit;
 }
 
-FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
+FilterErrorFit filter_error(const FittedModel& start, const std::vector<Signals>& experiments, const FilterOptions& options) {
   FilterOptions here = options;
   if (start.integration > 0.0) here.integration = std::min(here.integration, start.integration);
   return filter_error(std::vector<FilterStart>{{start.model, curve_penalties(start.model)}}, experiments, here);
 }
 
-FilterError filter_error(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments, const FilterOptions& options) {
+FilterErrorFit filter_error(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments, const FilterOptions& options) {
   const Stopwatch clock;
-  FilterError out;
+  FilterErrorFit out;
   try {
     out.estimate = estimate_filter(starts, experiments, options);
-    const Unhurried writing_up;
+    const SuspendedTimeLimit writing_up;
     out.fit = filter_fit(*out.estimate, options.threads);
   } catch (const RunError& error) {
     out.fit.method = estimators::filter_error.name;
     out.fit.status = FitStatus::declined;
     out.fit.message = error.what();
-  } catch (const TimeSpent& spent) {
+  } catch (const TimeLimitReached& spent) {
     out.fit.method = estimators::filter_error.name;
     out.fit.message = spent.what();
   }

@@ -10,14 +10,14 @@ namespace misfit {
 
 /// Estimate and fit in one (lib/misfit/README.md, 5.6). Status `declined` in words where the states cannot be read or too little data are
 /// left.
-struct FilterError {
+struct FilterErrorFit {
   Fit fit;
   std::optional<FilterEstimate> estimate;
 };
-[[nodiscard]] FilterError filter_error(const FittedModel& start, const std::vector<Signals>& experiments,
-                                       const FilterOptions& options = {});
+[[nodiscard]] FilterErrorFit filter_error(const FittedModel& start, const std::vector<Signals>& experiments,
+                                          const FilterOptions& options = {});
 /// The same from several starts of one model.
-[[nodiscard]] FilterError filter_error(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
-                                       const FilterOptions& options = {});
+[[nodiscard]] FilterErrorFit filter_error(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
+                                          const FilterOptions& options = {});
 
 }  // namespace misfit

@@ -32,8 +32,8 @@ class StartedSearches {
       begin_freely();
       const auto others = std::count_if(starts_.begin(), starts_.end(), [](const FilterStart& start) { return !start.freely; });
       return others == 1 && !freely_ ? from_first() : from_all();
-    } catch (const TimeSpent& spent) {
-      const Unhurried writing_up;
+    } catch (const TimeLimitReached& spent) {
+      const SuspendedTimeLimit writing_up;
       return best_when(spent);
     }
   }
@@ -127,7 +127,7 @@ class StartedSearches {
   }
 
   /// The end of a search that was finished, else the best point that any has come to.
-  FilterEstimate best_when(const TimeSpent& spent) {
+  FilterEstimate best_when(const TimeLimitReached& spent) {
     if (best_) {
       best_->notes.push_back(std::string("a search from another start was not finished: ") + spent.what());
       return std::move(*best_);
@@ -136,7 +136,7 @@ class StartedSearches {
     for (const auto& search : searches_) {
       if (search->cut_off(spent)) return search->take();
     }
-    throw TimeSpent(in_words(spent));
+    throw TimeLimitReached(in_words(spent));
   }
 
   const std::vector<FilterStart>& starts_;

@@ -1,7 +1,7 @@
 #pragma once
 
 // References
-//   [MI]  R. E. Maine, K. W. Iliff, SIAM J. Appl. Math. 41 (1981): Gauss–Newton on innovations, gains held per iteration.
+//   [MI]  R. E. Maine, K. W. Iliff, SIAM J. Appl. Math. 41 (1981): Gauss–Newton on innovations, gains fixed per iteration.
 
 #include <optional>
 
@@ -14,7 +14,7 @@ struct FilterOptions {
   int threads = 0;                         ///< 0: one per core; does not change the answer
   std::optional<FilterNoise> noise;        ///< where to start; nullopt: looked for
   std::vector<double> noise_factors = {};  ///< where it is looked for: what to multiply the first one with, outputs, then force
-  std::optional<FilterNoise> around;       ///< what sets the bounds of the noise; nullopt: the data
+  std::optional<FilterNoise> reference;    ///< what sets the bounds of the noise; nullopt: the data
   std::optional<std::vector<std::vector<SampleRole>>> use;  ///< per experiment, so that two models are compared on the same measurements
   std::optional<std::vector<IntegrationPlan>> plans;        ///< per experiment, for the same reason, and kept; nullopt: along the first run
   bool choose_roughness = true;                             ///< false: penalties as handed over
@@ -36,13 +36,13 @@ struct FilterEstimate {
   Model model;         ///< the caller's, with the estimates
   FilterModel forced;  ///< the same with the random force
   std::vector<Penalty> penalties;
-  FilterNoise noise, around;
+  FilterNoise noise, reference;
   NoiseFit noise_fit;
   std::vector<FilterData> data;
   std::vector<FilterTrace> traces;
   std::vector<FilterJacobian> jacobians;  ///< at the estimate
   Eigen::MatrixXd covariance;             ///< of the free parameters: inverse of the information with roughness and priors
-  Eigen::MatrixXd joint_covariance;       ///< of parameters and log noise together, nothing held; empty where not verified
+  Eigen::MatrixXd joint_covariance;       ///< of parameters and log noise together, nothing fixed; empty where not verified
   Eigen::MatrixXd joint_information;      ///< of which that is the inverse, without the roughness
   double objective = 0.0;                 ///< log-likelihood + log priors of parameters, roughness and noise
   double loglik = 0.0, validation_loglik = 0.0;
@@ -75,28 +75,18 @@ struct FilterEstimate {
 /// The steps of integration that it was found with, per experiment.
 [[nodiscard]] std::vector<IntegrationPlan> plans_of(const FilterEstimate& estimate);
 
-/// Maximum likelihood of parameters, roughness and noise, in these steps (`FilterSearch`):
-///   1. `begin`: the filter is run from the start; where no noise is given, the usual one is raised until innovations are about as large as
-///      it expects them. A start from which it cannot be run is replaced by one from which it can (runnable_starts(), noise raised again);
-///      a note says so.
-///   2. `search_noise` (no noise given): one Gauss–Newton step of the parameters, then the noise from three frequencies of its resonance;
-///   or
-///      the noise so about the start, where that is clearly higher.
-///   3. `LikelihoodAscent::iterate`: in turn, until neither gains, the parameters by Gauss–Newton on innovations with the gains held per
-///      iteration [MI], roughness by marginal likelihood (estimate_smoothing), and the noise by Fisher scoring about the runs (fit_noise).
-///   4. `reject_outliers` (no use given): measurements beyond the gate are set aside and 3. is repeated, until their set stays; those at
-///      jumps of an input stay where that is what most of them have in common (outliers_at_jumps.h).
-///   5. `refine_jointly` (if verified): Newton steps over parameters and noise together by derivatives of the exact likelihood
-///      (lib/misfit/README.md, 5.7); its own steps are listed there.
-///   6. `conclude`: covariance, effective parameters, and in words whether the likelihood still rises.
+/// Maximum likelihood of parameters, roughness and noise (lib/misfit/README.md, 5.7, which has the steps with their numbers): noise raised
+/// until the model can be run; its noise searched for; parameters by Gauss–Newton on innovations with the gains fixed per iteration [MI],
+/// roughness by marginal likelihood and noise by Fisher scoring, in turn; the correlation time surveyed; outliers set aside; Newton steps
+/// over parameters and noise together by the exact likelihood; the integration refined; covariance.
 /// Penalties: those of `start`. RunError if the states cannot be read from the channels or the model can be run from no start.
 /// A start that is given noise, uses and roughness is also a floor: the search does not end below it. Where a limit of time is spent
-/// (core/watch.h), the best point so far, not converged (`out_of_time`); TimeSpent if there is none.
+/// (core/watch.h), the best point so far, not converged (`out_of_time`); TimeLimitReached if there is none.
 [[nodiscard]] FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
 
-/// The same from several starts of one model: step 3 for a few rounds from each, then on from the best, and from a second one that is not
-/// clearly lower; of these the end with the higher marginal likelihood (marginal_loglik()).
+/// The same from several starts of one model: a few rounds of the blocks in turn from each, then on from the best, and from a second one
+/// that is not clearly lower; of these the end with the higher marginal likelihood (marginal_loglik()).
 [[nodiscard]] FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
 

@@ -43,49 +43,52 @@ NoiseStep::Coloured coloured_step(const ChannelNoise& noise, double h) {
 
 }  // namespace
 
-NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around) {
+NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& reference) {
   constexpr double shortest_memory = 0.15;  // of the usual correlation time: shorter than a sample is white
   NoiseVector out;
-  push(out, "force", noise.force, {1e-3 * around.force, 1e3 * around.force});
-  const Bounds memory{(around.time_held ? 1.0 : shortest_memory) * around.force_time, (around.time_held ? 1.0 : 1e2) * around.force_time};
+  push(out, "force", noise.force, {1e-3 * reference.force, 1e3 * reference.force});
+  const Bounds memory{(reference.time_is_given ? 1.0 : shortest_memory) * reference.force_time,
+                      (reference.time_is_given ? 1.0 : 1e2) * reference.force_time};
   push(out, "force_time", noise.force_time, memory);
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
     const ChannelNoise& channel = noise.channels[o];
-    const ChannelNoise& usual = around.channels[o];
+    const ChannelNoise& usual = reference.channels[o];
     const std::string& name = spec.outputs[o].name;
-    const double reach = usual.held ? 1.0 : 1e2;
+    const double reach = usual.given ? 1.0 : 1e2;
     push(out, name, channel.white, {usual.white / reach, usual.white * reach});
-    push(out, name + "_coloured", channel.coloured, {1e-3 * usual.white, (usual.held || usual.no_coloured ? 1e-3 : 1e2) * usual.white});
+    push(out, name + "_coloured", channel.coloured, {1e-3 * usual.white, (usual.given || usual.no_coloured ? 1e-3 : 1e2) * usual.white});
     push(out, name + "_coloured_frequency", channel.coloured_frequency, {0.5 * usual.coloured_frequency, 3.3 * usual.coloured_frequency});
     push(out, name + "_coloured_damping", channel.coloured_damping, {0.01, 0.99});
   }
   for (std::size_t g = 0; g < noise.further_forces.size(); ++g) {
-    const double usual = around.further_forces[g];
+    const double usual = reference.further_forces[g];
     push(out, "force_" + std::to_string(g + 2), noise.further_forces[g], {1e-3 * usual, 1e3 * usual});
   }
   out.prior = ColumnPriors{}.padded(std::ssize(out.value));
-  if (around.prior.group < 0) return out;
-  const auto place = static_cast<Eigen::Index>(place_of_force(around.prior.group, spec));
-  out.prior.mean[place] = std::log(around.prior.median);
-  out.prior.precision[place] = 1.0 / (around.prior.log_sigma * around.prior.log_sigma);
+  if (reference.prior.group < 0) return out;
+  const auto place = static_cast<Eigen::Index>(place_of_force(reference.prior.group, spec));
+  out.prior.mean[place] = std::log(reference.prior.median);
+  out.prior.precision[place] = 1.0 / (reference.prior.log_sigma * reference.prior.log_sigma);
   return out;
 }
 
-double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around) {
-  if (around.prior.group < 0) return 0.0;
-  const NoiseVector vector = pack(noise, spec, around);
+double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& reference) {
+  if (reference.prior.group < 0) return 0.0;
+  const NoiseVector vector = pack(noise, spec, reference);
   return vector.prior.log_density(Eigen::Map<const Eigen::VectorXd>(vector.value.data(), std::ssize(vector.value)));
 }
 
-std::size_t place_of_force(int group, const SystemSpec& spec) { return group == 0 ? 0 : 1 + 4 * spec.outputs.size() + group; }
+std::size_t place_of_force(int group, const SystemSpec& spec) {
+  return group == 0 ? place_in_noise::force : place_in_noise::white(spec.outputs.size()) + group - 1;
+}
 
 FilterNoise unpack(const std::vector<double>& logs, const SystemSpec& spec) {
   FilterNoise out;
-  out.force = std::exp(logs[0]);
-  out.force_time = std::exp(logs[1]);
+  out.force = std::exp(logs[place_in_noise::force]);
+  out.force_time = std::exp(logs[place_in_noise::force_time]);
   const std::size_t channels_end = place_of_force(1, spec);
   for (std::size_t i = channels_end; i < logs.size(); ++i) out.further_forces.push_back(std::exp(logs[i]));
-  for (std::size_t i = 2; i < channels_end; i += 4)
+  for (std::size_t i = place_in_noise::white(0); i < channels_end; i += place_in_noise::per_channel)
     out.channels.push_back({std::exp(logs[i]), std::exp(logs[i + 1]), std::exp(logs[i + 2]), std::exp(logs[i + 3])});
   return out;
 }
@@ -113,10 +116,10 @@ NoiseStep discretise(const FilterNoise& noise, double h) {
   return out;
 }
 
-FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& around) {
+FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& reference) {
   constexpr double nearly_nothing = 1e-3;
-  noise.force = nearly_nothing * around.force;
-  for (std::size_t g = 0; g < noise.further_forces.size(); ++g) noise.further_forces[g] = nearly_nothing * around.further_forces[g];
+  noise.force = nearly_nothing * reference.force;
+  for (std::size_t g = 0; g < noise.further_forces.size(); ++g) noise.further_forces[g] = nearly_nothing * reference.further_forces[g];
   for (ChannelNoise& channel : noise.channels) {
     channel.white = std::hypot(channel.white, channel.coloured);
     channel.coloured = nearly_nothing * channel.white;

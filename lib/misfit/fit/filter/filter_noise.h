@@ -19,7 +19,7 @@ struct ChannelNoise {
   double coloured = 0.0;            ///< stationary sigma of the resonance [unit]
   double coloured_frequency = 1.0;  ///< [Hz]
   double coloured_damping = 0.3;    ///< of critical
-  bool held = false;                ///< white is known and all there is
+  bool given = false;               ///< by the study: white noise, and nothing else
   bool no_coloured = false;         ///< white is all there is
 };
 
@@ -35,7 +35,7 @@ struct FilterNoise {
   double force = 0.0;       ///< stationary sigma on the ports of the first group [port unit]
   double force_time = 0.1;  ///< correlation time [s]
   std::vector<ChannelNoise> channels;
-  bool time_held = false;                   ///< the correlation time is known
+  bool time_is_given = false;               ///< the correlation time is known
   std::vector<double> further_forces = {};  ///< the same of the further groups [port unit]
   ForcePrior prior = {};                    ///< what is known of a strength beforehand
 
@@ -49,13 +49,21 @@ struct NoiseVector {
   ColumnPriors prior;              ///< of the logarithms
   std::vector<std::string> names;  ///< "force", "force_time", "P_y", "P_y_coloured", …
 };
+/// Places in it.
+namespace place_in_noise {
+inline constexpr std::size_t force = 0, force_time = 1, per_channel = 4;
+[[nodiscard]] constexpr std::size_t white(std::size_t output) { return 2 + per_channel * output; }
+[[nodiscard]] constexpr std::size_t coloured(std::size_t output) { return white(output) + 1; }
+[[nodiscard]] constexpr std::size_t coloured_frequency(std::size_t output) { return white(output) + 2; }
+[[nodiscard]] constexpr std::size_t coloured_damping(std::size_t output) { return white(output) + 3; }
+}  // namespace place_in_noise
 [[nodiscard]] NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec,
-                               const FilterNoise& around);  ///< `around`: bounds and prior
+                               const FilterNoise& reference);  ///< `reference`: bounds and prior
 /// log density of the noise's prior, constants left out.
-[[nodiscard]] double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& around);
+[[nodiscard]] double log_prior(const FilterNoise& noise, const SystemSpec& spec, const FilterNoise& reference);
 [[nodiscard]] FilterNoise unpack(const std::vector<double>& logs, const SystemSpec& spec);
-/// With the least random force that the bounds about `around` allow, and white noise alone, as large as it was with its coloured noise.
-[[nodiscard]] FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& around);
+/// With the least random force that the bounds about `reference` allow, and white noise alone, as large as it was with its coloured noise.
+[[nodiscard]] FilterNoise hardly_forced(FilterNoise noise, const FilterNoise& reference);
 /// Place of a group's strength among them; of the number of groups: how many logarithms there are.
 [[nodiscard]] std::size_t place_of_force(int group, const SystemSpec& spec);
 

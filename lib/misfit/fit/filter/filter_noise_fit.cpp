@@ -163,12 +163,12 @@ class Scoring {
 }  // namespace
 
 NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const NoiseSearch& search) {
-  const NoiseVector vector = pack(start, runs.model->model.system->spec(), search.around);
+  const NoiseVector vector = pack(start, runs.model->model.system->spec(), search.reference);
   return Scoring(runs, vector, search.threads).run(search.max_iterations);
 }
 
-Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around, int threads) {
-  const NoiseVector vector = pack(unpack(logs, runs.model->model.system->spec()), runs.model->model.system->spec(), around);
+Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& reference, int threads) {
+  const NoiseVector vector = pack(unpack(logs, runs.model->model.system->spec()), runs.model->model.system->spec(), reference);
   return Scoring(runs, vector, threads).information(logs);
 }
 

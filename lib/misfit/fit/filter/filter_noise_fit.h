@@ -22,18 +22,18 @@ struct NoiseFit {
   bool converged = false;
 };
 
-/// Maximum of likelihood times prior of the noise with the runs' trajectories held: Fisher scoring with derivatives of innovations and
-/// variances by differences of the whole linear filter (step 1e-4 in the logarithm), Levenberg damping. `around` sets bounds and prior
+/// Maximum of likelihood times prior of the noise with the runs' trajectories fixed: Fisher scoring with derivatives of innovations and
+/// variances by differences of the whole linear filter (step 1e-4 in the logarithm), Levenberg damping. `reference` sets bounds and prior
 /// (pack()). The answer does not depend on `threads`.
 struct NoiseSearch {
-  const FilterNoise& around;
+  const FilterNoise& reference;
   int threads = 0;
   int max_iterations = 12;
 };
 [[nodiscard]] NoiseFit fit_noise(const LinearisedRuns& runs, const FilterNoise& start, const NoiseSearch& search);
 
-/// The information of fit_noise at any logarithms (pack()), counted measurements only; parameters are held.
-[[nodiscard]] Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& around,
+/// The information of fit_noise at any logarithms (pack()), counted measurements only; parameters are fixed.
+[[nodiscard]] Eigen::MatrixXd noise_information(const LinearisedRuns& runs, const std::vector<double>& logs, const FilterNoise& reference,
                                                 int threads);
 
 /// Pins, in an information whose last rows are those of `fit`'s logarithms, what is at its bound or so unknown that the data do not even

@@ -222,7 +222,7 @@ class FilterPass {
   Slots slots_;
   std::array<double, kMaxStates> x_{};
   std::array<int, kMaxOutputs> wild_run_{};  // measurements beyond the gate in a row; -1: too many
-  RowMatrix s_model_, s_coloured_, s_work_;  // ∂(state)/∂θ with the gains held
+  RowMatrix s_model_, s_coloured_, s_work_;  // ∂(state)/∂θ with the gains fixed
   Eigen::RowVectorXd s_row_;
 };
 

@@ -128,7 +128,7 @@ struct Innovations {
 struct Smoothing {
   RowMatrix x, variance;  ///< samples × n
 };
-/// ∂ log-likelihood/∂(predicted state) of each sample's and all later measurements, gains held, held-out measurements left out: samples ×
+/// ∂ log-likelihood/∂(predicted state) of each sample's and all later measurements, gains fixed, held-out measurements left out: samples ×
 /// n.
 [[nodiscard]] RowMatrix adjoint_of(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);
 [[nodiscard]] Smoothing smooth_states(const FilterTrace& trace, const FilterData& data, const FilterNoise& noise);

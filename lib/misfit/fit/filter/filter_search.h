@@ -1,26 +1,19 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "misfit/core/error.h"
-#include "misfit/core/lists.h"
-#include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_estimate.h"
 #include "misfit/fit/filter/first_noise.h"
-#include "misfit/fit/filter/free_approach.h"
 #include "misfit/fit/filter/likelihood_ascent.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
-#include "misfit/fit/filter/noise_survey.h"
 #include "misfit/fit/filter/other_weights.h"
-#include "misfit/fit/filter/outliers_at_jumps.h"
 #include "misfit/fit/filter/restricted_likelihood.h"
-#include "misfit/fit/filter/runnable_start.h"
 #include "misfit/math/bfgs.h"
 
 // Of estimate_filter(): not for use outside.
@@ -32,51 +25,22 @@ class FilterSearch {
   FilterSearch(const FilterStart& start, const std::vector<Signals>& experiments, const FilterOptions& options)
       : options_(options),
         noise_given_(start.noise || options.noise),
-        at_(start.model, start.penalties, experiments, begun(start, options)) {}
+        at_(start.model, start.penalties, experiments, with_noise_of(start, options)) {}
 
   /// What becomes of a start from which the model cannot be run.
   enum class Unrunnable { replaced, refused };
 
   /// As far as the first rounds of the blocks in turn. RunError: the model cannot be run from its start, or from none in its place.
-  void approach(int rounds, Unrunnable unrunnable = Unrunnable::replaced) {
-    begin(unrunnable);
-    plan_first();
-    set_floor();
-    if (!noise_given_) search_noise(at_, options_.threads);
-    iterate_first(rounds);
-  }
+  void approach(int rounds, Unrunnable unrunnable = Unrunnable::replaced);
 
   /// The same from a free run (free_approach.h). RunError: the model cannot be run so.
-  void approach_freely(int rounds) {
-    settle_freely(at_);
-    plan_first();
-    iterate_first(rounds);
-  }
+  void approach_freely(int rounds);
 
   /// On to the end. RunError: the model cannot be run where it ended.
-  void finish() {
-    if (!out_.converged && rounds_left_ > 0) at_.iterate(rounds_left_, tolerance());
-    if (!options_.noise && !out_.around.time_held) survey_noise();
-    if (!options_.noise && options_.verify) weigh_outputs_otherwise(at_, {all_rounds, tolerance(), options_.threads});
-    if (!options_.use) reject_outliers();
-    if (options_.verify) refine_jointly();
-    return_to_floor();
-    if (options_.verify && !options_.plans) integrate_well();
-    conclude();
-  }
+  void finish();
 
   /// Ends where the search was when its time was spent, not converged. False: it had come to no point yet.
-  bool cut_off(const TimeSpent& spent) {
-    if (!at_.return_to_remembered()) return false;
-    out_.newton_decrement.reset();
-    out_.joint_covariance.resize(0, 0);
-    out_.joint_information.resize(0, 0);
-    out_.converged = false;
-    conclude();
-    out_.out_of_time = true;
-    out_.message = in_words(spent, "log-likelihood", out_.loglik);
-    return true;
-  }
+  bool cut_off(const TimeLimitReached& spent);
   /// [log-likelihood] Objective of the point to which cut_off() would return.
   [[nodiscard]] double reached() const { return at_.reached(); }
 
@@ -93,331 +57,74 @@ class FilterSearch {
   static constexpr int all_rounds = 25;
 
  private:
-  static FilterOptions begun(const FilterStart& start, FilterOptions options) {
-    if (start.noise) options.noise = start.noise;
-    return options;
-  }
+  /// The options with the noise that a start brings.
+  static FilterOptions with_noise_of(const FilterStart& start, FilterOptions options);
 
   /// [log-likelihood] Coarse where refine_jointly() follows.
   [[nodiscard]] double tolerance() const { return options_.verify ? 0.2 : 0.02; }
 
-  void plan_first() {
-    at_.remember();
-    if (!options_.plans && at_.plan(options_.integration) && !at_.linearise()) throw RunError(at_.failure());
-  }
+  void plan_first();
+  void iterate_first(int rounds);
 
-  void iterate_first(int rounds) {
-    at_.iterate(rounds, tolerance());  // refine_jointly() steps over both blocks at once
-    rounds_left_ -= rounds;
-  }
-
-  void begin(Unrunnable unrunnable) {
-    const FilterNoise first_noise = out_.noise;
-    if (runs_with_raised_noise() || runs_finely(first_noise)) return;
-    const std::string why = at_.failure();
-    if (unrunnable == Unrunnable::refused) throw RunError(why);
-    for (const RunnableStart& start : runnable_starts(out_.model)) {
-      at_.theta = start.model.theta();
-      out_.noise = out_.around;
-      out_.forced.set_force_time(out_.noise.force_time);
-      noise_given_ = false;
-      if (!runs_with_raised_noise()) continue;
-      replaced_ = "the model cannot be run from its start (" + why + "); the search began elsewhere: " + start.words;
-      return;
-    }
-    throw RunError(why);
-  }
+  /// The model can be run: with the noise raised, in finer steps, or from another start. RunError: from none.
+  void make_runnable(Unrunnable unrunnable);
 
   /// A filter whose assumed noise is too small diverges: noise is raised until the RMS of the whitened innovations is at most 2.
-  bool runs_with_raised_noise() {
-    constexpr int most_raises = 12;
-    constexpr double most_variance = 4.0;  // of whitened innovations, which should have 1
-    bool runs = at_.linearise();
-    for (int k = 0; k < most_raises && !noise_given_; ++k) {
-      if (runs && innovation_variance() <= most_variance) break;
-      out_.noise.force *= 2.0;
-      for (double& force : out_.noise.further_forces) force *= 2.0;
-      for (auto& channel : out_.noise.channels) {
-        channel.white *= 1.5;
-        channel.coloured *= 1.5;
-      }
-      runs = at_.linearise();
-    }
-    return runs;
-  }
+  bool runs_with_raised_noise();
 
   /// A motion that the steps of a search lose may be followed in finer ones.
-  bool runs_finely(const FilterNoise& noise) {
-    constexpr double fine = 1e-7;
-    if (options_.integration <= fine) return false;
-    out_.noise = noise;
-    at_.plan_along_measurements(fine);
-    if (!runs_with_raised_noise()) return false;
-    options_.integration = fine;
-    return true;
-  }
+  bool runs_finely(const FilterNoise& noise);
 
   /// Where noise, measurements and roughness are given, the end is compared with the start: of two models each is to end at its maximum on
   /// the same, and the larger one never below the smaller one from which it began.
-  void set_floor() {
-    if (!noise_given_ || !options_.use || any_chosen(out_.penalties)) return;
-    floor_.emplace(Floor{at_.theta, pack(out_.noise, out_.model.system->spec(), out_.around).value, at_.objective});
-  }
+  void set_floor();
 
   /// A noise step may lose a little, and the noise's restricted likelihood has its maximum elsewhere: an end below the start is replaced by
   /// what plain Newton steps, each of which rises, reach from the start.
-  void return_to_floor() {
-    constexpr int most_steps = 5;
-    if (!floor_ || at_.objective >= floor_->objective || !at_.move_to(floor_->theta, floor_->logs)) return;
-    const Eigen::MatrixXd information = out_.noise_fit.information;
-    out_.noise_fit = fit_noise(at_.runs(), out_.noise, {out_.around, options_.threads, 0});
-    out_.noise_fit.information = information;
-    out_.noise_fit.logs = floor_->logs;
-    const Eigen::Index q = std::ssize(floor_->logs);
-    restricted_ = {Eigen::VectorXd::Zero(q), Eigen::MatrixXd::Zero(q, q)};
-    LikelihoodDerivatives exact;
-    for (int k = 0; k < most_steps && options_.verify; ++k) {
-      if (!differentiate(false, exact) || !invert_joint(exact)) return;
-      if (!at_.joint_step(exact.gradient, out_.joint_covariance, restricted_.slope)) return;
-      if (*out_.newton_decrement < kDecrementOfOneSigma) return;
-    }
-  }
+  void return_to_floor();
 
-  [[nodiscard]] double innovation_variance() const {
-    double squares = 0.0, count = 0.0;
-    for (const auto& jacobian : out_.jacobians) {
-      squares += jacobian.r.squaredNorm();
-      count += static_cast<double>(jacobian.r.size());
-    }
-    return count > 0.0 ? squares / count : 0.0;
-  }
+  [[nodiscard]] double innovation_variance() const;
 
   /// The likelihood has a maximum per correlation time at which the random force can stand in for something else (coloured noise, the
   /// motion's own memory): the search goes on from the highest, others nearly as high are named.
-  void survey_noise() {
-    constexpr double clearly_higher = 0.5, nearly = 5.0;  // [log-likelihood]
-    const std::vector<NoiseFit> maxima = noise_maxima(at_.runs(), out_.noise, {out_.around, options_.threads});
-    if (maxima.empty()) return;
-    const double present = fit_noise(at_.runs(), out_.noise, {out_.around, options_.threads, 0}).minus_log_density;
-    if (maxima.front().minus_log_density < present - clearly_higher && at_.try_noise(maxima.front())) at_.iterate(all_rounds, tolerance());
-    for (const NoiseFit& other : maxima) {
-      const double below = other.minus_log_density - maxima.front().minus_log_density;
-      if (&other == &maxima.front() || below > nearly) continue;
-      out_.notes.push_back("the likelihood has another maximum at a correlation time of the random force of about " +
-                           format_value(other.noise.force_time) + " s, lower by " + format_value(2.0 * below) + " in 2 log L");
-    }
-  }
+  void survey_noise();
 
   /// Gates the measurements and estimates again until the rejected set no longer changes: outliers in the data bias the first estimates, by
   /// which good measurements may have been rejected too. Those at the jumps of an input are kept.
-  void reject_outliers() {
-    constexpr int most_rounds = 4;
-    const std::vector<FilterData> all = out_.data;
-    std::vector<std::vector<std::size_t>> before(all.size()), now(all.size());
-    std::optional<OutliersAtJumps> kept;
-    FilterRunner runner(out_.forced, false);
-    for (int round = 0; round < most_rounds; ++round) {
-      FilterTrace trace;
-      runner.set_parameters(at_.values());
-      bool runs = true;
-      for (std::size_t e = 0; e < all.size(); ++e) runs = runs && runner.run_gated(all[e], out_.noise, trace, now[e]);
-      if (!runs) break;
-      if (const auto at_jumps = outliers_at_jumps(out_.model.system->spec(), all, now)) kept = at_jumps;
-      out_.outliers = 0;
-      for (std::size_t e = 0; e < all.size(); ++e) {
-        if (kept) now[e] = without_those_at_jumps(all[e], kept->input, std::move(now[e]));
-        out_.outliers += int_size(now[e]);
-      }
-      if (now == before) break;
-      for (std::size_t e = 0; e < all.size(); ++e) {
-        out_.data[e].use = all[e].use;
-        for (std::size_t at : now[e]) out_.data[e].use[at] = SampleRole::none;
-      }
-      before = now;
-      iterate_again();
-    }
-    if (kept) out_.notes.push_back(in_words(*kept, out_.model.system->spec()));
-  }
+  void reject_outliers();
 
   /// After a change of which measurements count.
-  void iterate_again() {
-    at_.linearise();
-    at_.iterate(15, tolerance());
-  }
+  void iterate_again();
 
-  /// Newton steps over parameters and log noise together, each in these steps:
-  ///   1. `differentiate`: gradient and Fisher information of the exact likelihood; one-sided differences only after a short step whose
-  ///      gain was as predicted ("promised").
-  ///   2. `exclude_nonlinear` (no use given): measurements at which the filter's linearisation fails still update the state, but no longer
-  ///      count in the likelihood; iterate and begin again.
-  ///   3. `restrict_likelihood`: correction of the noise's gradient and information for the estimated parameters (REML).
-  ///   4. `invert_joint`: covariance of parameters and noise with roughness and priors.
-  ///   5. `step_jointly`: a Newton step inside the bounds that raises the exact objective.
-  /// Ends when no step rises, not even along the axes of the correlation matrix (step_along_axes(), where a step promised little, twice at
-  /// most: each costs about as much as a Newton step), or after a step of less than a sigma.
-  void refine_jointly() {
-    constexpr int most_steps = 20, most_axis_steps = 2;
-    constexpr double short_step = 8.0, as_promised = 0.2;  // promised gain: of four sigmas of one parameter; share of it
-    constexpr double of_ten_sigmas = 50.0, little = 0.1;   // promised gain; gain, and share of what was promised
-    LikelihoodDerivatives exact;
-    bool one_sided = false;
-    at_kink_ = false;
-    for (int k = 0, axis_steps = 0; k < most_steps; ++k) {
-      if (!differentiate(one_sided, exact)) return;
-      one_sided = false;
-      if (!options_.use && exclude_nonlinear(exact.nonlinear)) {
-        iterate_again();
-        bfgs_ = {};
-        continue;
-      }
-      restrict_likelihood();
-      if (!invert_joint(exact)) return;
-      const std::optional<double> gained = step_jointly(exact);
-      const double promised = *out_.newton_decrement;
-      if (promised >= kDecrementOfOneSigma && gained.value_or(0.0) < std::min(little, little * promised)) {
-        if (promised >= of_ten_sigmas || axis_steps++ == most_axis_steps || !step_along_axes()) return;
-        continue;
-      }
-      if (!gained) return;
-      if (promised < kDecrementOfOneSigma) {
-        out_.newton_decrement = std::abs(promised - *gained);
-        return;
-      }
-      one_sided = promised < short_step && std::abs(*gained - promised) < as_promised * promised;
-    }
-  }
+  /// Newton steps over parameters and log noise together (lib/misfit/README.md, 5.7, step 6). Ends when no step rises, not even along the
+  /// axes of the correlation matrix (step_along_axes(), where a step promised little, twice at most: each costs about as much as a Newton
+  /// step), or after a step of less than a sigma.
+  void refine_jointly();
 
-  bool differentiate(bool one_sided, LikelihoodDerivatives& exact) {
-    const auto at_theta = [&](const LikelihoodDerivatives* near) { return exact_derivatives(out_, at_.theta, options_.threads, near); };
-    exact = at_theta(one_sided ? &exact : nullptr);
-    if (one_sided && !exact.failure.empty()) exact = at_theta(nullptr);
-    out_.newton_decrement.reset();
-    if (exact.failure.empty()) return true;
-    unverified_ = exact.failure;
-    return false;
-  }
+  bool differentiate(bool one_sided, LikelihoodDerivatives& exact);
 
   /// Plans the integration anew where its error moves an estimate by more than a tenth of its sigma, and estimates again.
-  void integrate_well() {
-    constexpr double enough = 0.1, aim = 0.05, few = 3.0;
-    constexpr int most_plans = 3;
-    double tolerance = options_.integration;
-    for (int plans = 0;; ++plans) {
-      const double shift = at_.integration_shift();
-      describe_integration(plans, shift);
-      if (!(shift > enough) || plans == most_plans || tolerance <= kFinestTolerance) return;
-      tolerance = finer_tolerance(plans_of(out_), aim / shift);
-      if (!at_.plan(tolerance) || !at_.linearise()) return;
-      if (shift > few) at_.iterate(15, this->tolerance());
-      bfgs_ = {};
-      refine_jointly();
-    }
-  }
+  void integrate_well();
 
-  void describe_integration(int plans, double shift) {
-    const std::vector<IntegrationPlan> used = plans_of(out_);
-    out_.integration = in_words(used, plans) + in_words_of(shift, used.front().tolerance);
-  }
-
-  bool exclude_nonlinear(const std::vector<std::vector<std::size_t>>& nonlinear) {
-    bool any = false;
-    for (std::size_t e = 0; e < nonlinear.size(); ++e) {
-      for (std::size_t at : nonlinear[e]) {
-        out_.data[e].use[at] = SampleRole::update;
-        out_.nonlinear.push_back(out_.data[e].signals->t[at / out_.model.outputs()]);
-        any = true;
-      }
-    }
-    return any;
-  }
+  void describe_integration(int plans, double shift);
+  bool exclude_nonlinear(const std::vector<std::vector<std::size_t>>& nonlinear);
 
   /// −½ log det N is nearly linear in the logarithms of the noise: its gradient is reused until one of these has changed by 0.1.
-  void restrict_likelihood() {
-    constexpr double least_change = 0.1;
-    const std::vector<double>& logs = out_.noise_fit.logs;
-    bool moved = restricted_at_.size() != logs.size();
-    for (std::size_t i = 0; i < logs.size() && !moved; ++i) moved = std::abs(logs[i] - restricted_at_[i]) > least_change;
-    if (!moved) return;
-    restricted_ = restricted_likelihood(out_, at_.theta, options_.threads);
-    restricted_at_ = logs;
-  }
+  void restrict_likelihood();
 
   /// The information loss is an approximation: it is not subtracted where the matrix would not stay positive definite.
-  bool invert_joint(const LikelihoodDerivatives& exact) {
-    const Eigen::MatrixXd whole = joint_information(out_, exact);
-    Eigen::MatrixXd less = whole;
-    const Eigen::Index q = restricted_.information_loss.rows();
-    less.bottomRightCorner(q, q) -= restricted_.information_loss;
-    const PenaltyBasis basis = penalty_eigenbasis(whole.rows(), out_.penalties);
-    for (const Eigen::MatrixXd* information : std::array<const Eigen::MatrixXd*, 2>{&less, &whole}) {
-      if (!invert_with(*information, basis, out_.joint_covariance)) continue;
-      out_.joint_information = *information;
-      return true;
-    }
-    unverified_ = "the information matrix cannot be inverted";
-    return false;
-  }
+  bool invert_joint(const LikelihoodDerivatives& exact);
 
   /// With the BFGS inverse of the steps before; if that does not rise (near a kink its updates are wrong), with the inverse information.
-  std::optional<double> step_jointly(const LikelihoodDerivatives& exact) {
-    Eigen::VectorXd gradient = exact.gradient;
-    gradient.tail(restricted_.slope.size()) += restricted_.slope;
-    bfgs_.update(at_.joint(), gradient);
-    std::optional<double> gained = at_.joint_step(gradient, bfgs_.inverse(out_.joint_covariance), restricted_.slope);
-    if (gained || !bfgs_.has_updates()) return gained;
-    bfgs_ = {};
-    return at_.joint_step(gradient, out_.joint_covariance, restricted_.slope);
-  }
+  std::optional<double> step_jointly(const LikelihoodDerivatives& exact);
 
   /// No step that the derivatives propose rises as it promised. False: none along the axes rises by what a sigma is worth either, so that
   /// this is a maximum, at a kink.
-  bool step_along_axes() {
-    bfgs_ = {};
-    const double gained = at_.axis_step(out_.joint_covariance, restricted_.slope).value_or(0.0);
-    at_kink_ = gained < kDecrementOfOneSigma;
-    if (at_kink_) out_.newton_decrement = gained;
-    return !at_kink_;
-  }
+  bool step_along_axes();
 
-  void conclude() {
-    const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
-    if (!runs && !at_.linearise()) throw RunError(at_.failure());
-    out_.model.set_theta(at_.theta);
-    const std::vector<double> all = at_.values();
-    for (std::size_t i = 0; i < all.size(); ++i) out_.forced.model.parameters[i].value = all[i];
-    out_.objective = at_.objective;
-    if (at_.theta.size() > 0) set_covariance();
-    for (const auto& trace : out_.traces) out_.validation_loglik += trace.validation_loglik;
-    const std::optional<double>& left = out_.newton_decrement;
-    if (options_.verify) out_.converged = left && (*left < kDecrementOfOneSigma || (out_.converged && *left < kDecrementOfTwoSigmas));
-    out_.message = how_it_ended();
-  }
-
-  void set_covariance() {
-    std::vector<Penalty> given = with_weights_held(out_.penalties);
-    const PenalisedFit smoothed = estimate_smoothing(at_.normal_equations(), given, 1.0);
-    if (smoothed.ok) {
-      out_.covariance = smoothed.covariance;
-      out_.edf = smoothed.edf;
-    }
-    if (out_.joint_covariance.size() > 0) out_.covariance = out_.joint_covariance.topLeftCorner(at_.theta.size(), at_.theta.size());
-  }
-
-  [[nodiscard]] std::string how_it_ended() const {
-    const std::optional<double>& left = out_.newton_decrement;
-    constexpr double quadratic = 100.0;  // [log-likelihood] a promise of more is beyond what its derivatives know
-    if (left && *left >= quadratic) return "no maximum was reached: the likelihood still rises steeply";
-    if (left && *left >= kDecrementOfOneSigma) {
-      return "by its exact derivatives the log-likelihood could still rise by " + format_value(*left) +
-             (out_.converged ? ", less than a change of one parameter by two sigmas is worth" : "");
-    }
-    if (out_.converged && at_kink_)
-      return "a kink of the likelihood (a corner or a threshold that samples meet): no change of a parameter by a sigma raises it by what "
-             "that is worth";
-    if (out_.converged) return "the likelihood no longer rises";
-    if (options_.verify && !left) return "whether the likelihood is at its maximum could not be verified: " + unverified_;
-    return "iteration limit: the likelihood may still rise";
-  }
+  void conclude();
+  void set_covariance();
+  [[nodiscard]] std::string how_it_ended() const;
 
   /// Where a comparison begins.
   struct Floor {
@@ -427,7 +134,7 @@ class FilterSearch {
   };
 
   FilterOptions options_;
-  bool noise_given_;
+  bool noise_given_;  ///< by the caller or the start: not searched for at first
   std::string replaced_;
   int rounds_left_ = all_rounds;
   bool at_kink_ = false;

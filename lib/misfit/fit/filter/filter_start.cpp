@@ -183,8 +183,8 @@ SizedRecording sized_by_motion(const FilterModel& model, const FilterData& data)
 }  // namespace
 
 void mark_known(const FilterModel& model, FilterNoise& usual) {
-  usual.time_held = model.model.force_time.has_value();
-  for (std::size_t o = 0; o < usual.channels.size(); ++o) usual.channels[o].held = model.model.known_noise[o].fixed;
+  usual.time_is_given = model.model.force_time.has_value();
+  for (std::size_t o = 0; o < usual.channels.size(); ++o) usual.channels[o].given = model.model.known_noise[o].fixed;
   if (!model.model.force_strength) return;
   const KnownForce& known = *model.model.force_strength;
   const auto& ports = model.model.system->spec().dynamic_ports;

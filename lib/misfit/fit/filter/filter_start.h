@@ -11,7 +11,7 @@ namespace misfit {
 /// moves most; the rest of the first, which stands for all.
 [[nodiscard]] FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>& data);
 
-/// Marks in the usual noise what the study knows: noise and correlation time that are held, the prior of the force's strength. RunError if
+/// Marks in the usual noise what the study knows: noise and correlation time that are given, the prior of the force's strength. RunError if
 /// the random force acts on no port of the prior's unit.
 void mark_known(const FilterModel& model, FilterNoise& usual);
 

@@ -18,8 +18,8 @@ NoiseFit best_noise(const LikelihoodAscent& at, int threads) {
   for (const double share : {0.4, 1.0, 2.0}) {
     FilterNoise start = at.out.noise;
     for (std::size_t o = 0; o < start.channels.size(); ++o)
-      start.channels[o].coloured_frequency = share * at.out.around.channels[o].coloured_frequency;
-    const NoiseFit fit = fit_noise(at.runs(), start, {at.out.around, threads, iterations});
+      start.channels[o].coloured_frequency = share * at.out.reference.channels[o].coloured_frequency;
+    const NoiseFit fit = fit_noise(at.runs(), start, {at.out.reference, threads, iterations});
     if (fit.minus_log_density < best.minus_log_density) best = fit;
   }
   return best;

@@ -27,7 +27,7 @@ void add_whitened(const FilterEstimate& estimate, std::size_t experiment, std::s
 }
 
 bool begin(LikelihoodAscent& at) {
-  at.out.noise = hardly_forced(at.out.noise, at.out.around);
+  at.out.noise = hardly_forced(at.out.noise, at.out.reference);
   return at.linearise();
 }
 
@@ -38,7 +38,7 @@ double rescale_noise(FilterEstimate& estimate) {
     MeanSquare whitened;
     for (std::size_t e = 0; e < estimate.data.size(); ++e) add_whitened(estimate, e, o, whitened);
     ChannelNoise& channel = estimate.noise.channels[o];
-    if (!channel.held) channel.white *= std::sqrt(whitened.value());
+    if (!channel.given) channel.white *= std::sqrt(whitened.value());
     out += std::log(channel.white) / static_cast<double>(estimate.noise.channels.size());
   }
   return out;

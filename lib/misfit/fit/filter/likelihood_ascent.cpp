@@ -33,7 +33,7 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const std::vector<double>& b) {
 
 constexpr double least_gain = 0.02;  // of the log-likelihood: what is less is left
 
-/// Noise with the standard deviations of outputs, but for those held, and of the random force multiplied.
+/// Noise with the standard deviations of outputs, but for those given, and of the random force multiplied.
 FilterNoise multiplied(FilterNoise noise, const std::vector<double>& factors, const Model& model) {
   if (factors.empty()) return noise;
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
@@ -50,7 +50,7 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
                                    const FilterOptions& options)
     : threads_(options.threads) {
   out.model = start;
-  out.penalties = options.choose_roughness ? std::move(penalties) : with_weights_held(std::move(penalties));
+  out.penalties = options.choose_roughness ? std::move(penalties) : with_fixed_weights(std::move(penalties));
   out.forced = with_random_force(start);
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     const IntegrationPlan* plan = options.plans ? &(*options.plans)[e] : nullptr;
@@ -58,8 +58,8 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
     if (options.use) out.data[e].use = (*options.use)[e];
   }
   theta = start.theta();
-  out.around = options.around ? *options.around : usual_noise(out.forced, out.data);
-  out.noise = options.noise ? *options.noise : multiplied(out.around, options.noise_factors, start);
+  out.reference = options.reference ? *options.reference : usual_noise(out.forced, out.data);
+  out.noise = options.noise ? *options.noise : multiplied(out.reference, options.noise_factors, start);
   out.forced.set_force_time(out.noise.force_time);
 }
 
@@ -83,7 +83,7 @@ bool LikelihoodAscent::linearise() {
 }
 
 double LikelihoodAscent::log_prior() const {
-  return out.prior().log_density(theta) + misfit::log_prior(out.noise, out.model.system->spec(), out.around);
+  return out.prior().log_density(theta) + misfit::log_prior(out.noise, out.model.system->spec(), out.reference);
 }
 
 void LikelihoodAscent::plan_along_measurements(double tolerance) {
@@ -211,7 +211,7 @@ void LikelihoodAscent::damped_step(const Eigen::MatrixXd& precision, const Eigen
 bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
   const FilterNoise before = out.noise;
   const NoiseFit fit_before = out.noise_fit;
-  const std::vector<double> logs = pack(before, out.model.system->spec(), out.around).value;
+  const std::vector<double> logs = pack(before, out.model.system->spec(), out.reference).value;
   const double then = objective;
   if (!std::isfinite(fit.minus_log_density)) {
     out.noise_fit.logs = logs;
@@ -233,7 +233,7 @@ bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
 }
 
 BoxBounds LikelihoodAscent::joint_bounds() const {
-  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.around);
+  const NoiseVector noise = pack(out.noise, out.model.system->spec(), out.reference);
   const auto [lower, upper] = bounds_of(out.model);
   return {joined(lower, noise.lower), joined(upper, noise.upper)};
 }
@@ -280,8 +280,8 @@ bool LikelihoodAscent::return_to(const Point& point) {
 
 void LikelihoodAscent::describe_noise() {
   if (!out.noise_fit.at_bound.empty()) return;
-  out.noise_fit = fit_noise(runs(), out.noise, {out.around, threads_, 0});
-  out.noise_fit.information = noise_information(runs(), out.noise_fit.logs, out.around, threads_);
+  out.noise_fit = fit_noise(runs(), out.noise, {out.reference, threads_, 0});
+  out.noise_fit.information = noise_information(runs(), out.noise_fit.logs, out.reference, threads_);
 }
 
 bool LikelihoodAscent::begin_with(const FilterNoise& noise) {
@@ -304,7 +304,7 @@ void LikelihoodAscent::iterate(int most, double tolerance) {
     const bool choosing = any_chosen(out.penalties);
     const double edf = out.edf;
     const double not_gained = gauss_newton_step();
-    try_noise(fit_noise(runs(), out.noise, {out.around, threads_, k < 3 ? 3 : kRefinements}));
+    try_noise(fit_noise(runs(), out.noise, {out.reference, threads_, k < 3 ? 3 : kRefinements}));
     report_iteration(++iterations_, "log-likelihood", out.loglik);
     const bool settled = !choosing || std::abs(out.edf - edf) < 0.05;
     if (k > 0 && settled && std::abs(objective - before) < tolerance) {

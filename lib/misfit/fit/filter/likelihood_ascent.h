@@ -25,7 +25,7 @@ class LikelihoodAscent {
   /// Full run with derivatives at `theta`. False: the model cannot be run there, failure() says where it ended.
   bool linearise();
   /// One Gauss–Newton step of the physical parameters with new roughness; shortened until the exact objective rises. Returns what a step
-  /// promised of which no length rises: 0 if one did, or nothing was promised.
+  /// promised of which no length rises: 0 if one did, or nothing was promised; infinity where no step could be computed.
   double gauss_newton_step();
   /// Alternates the blocks, physical parameters and noise, until neither gains `tolerance`: then `out.converged`, unless a step that
   /// promised as much as a sigma of one parameter found no way up.

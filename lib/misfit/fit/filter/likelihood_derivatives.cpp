@@ -180,7 +180,7 @@ double log_density(const FilterTrace& trace, std::size_t place) {
 
 double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {
   return loglik_at(theta, noise) + estimate_->prior().log_density(theta) +
-         log_prior(noise, estimate_->model.system->spec(), estimate_->around);
+         log_prior(noise, estimate_->model.system->spec(), estimate_->reference);
 }
 
 double ExactObjective::loglik_at(const Eigen::VectorXd& theta, const FilterNoise& noise, std::vector<FilterTrace>* traces) const {
@@ -227,7 +227,7 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
   out.information = Eigen::MatrixXd(out.information.selfadjointView<Eigen::Lower>());
   const GaussianPrior prior{regularised_priors_about(theta, estimate.model, estimate.penalties, out.information), estimate.penalties};
   out.gradient.head(theta.size()) = back.transpose() * out.gradient.head(theta.size()).eval() + prior.gradient(theta);
-  const NoiseVector noise = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
+  const NoiseVector noise = pack(estimate.noise, estimate.model.system->spec(), estimate.reference);
   out.gradient.tail(std::ssize(noise.value)) +=
       noise.prior.gradient(Eigen::Map<const Eigen::VectorXd>(noise.value.data(), std::ssize(noise.value)));
   for (auto& nonlinear : out.nonlinear) {
@@ -240,7 +240,7 @@ LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Ei
 Eigen::MatrixXd joint_information(const FilterEstimate& estimate, const LikelihoodDerivatives& exact) {
   Eigen::MatrixXd out = exact.information;
   out.diagonal() += regularised_priors(estimate.model, out.diagonal()).padded(out.rows()).precision;
-  const NoiseVector noise = pack(estimate.noise, estimate.model.system->spec(), estimate.around);
+  const NoiseVector noise = pack(estimate.noise, estimate.model.system->spec(), estimate.reference);
   out.diagonal().tail(std::ssize(noise.value)) += noise.prior.precision;
   pin_unknown(estimate.noise_fit, out);
   return out;

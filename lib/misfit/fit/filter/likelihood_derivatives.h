@@ -12,7 +12,7 @@ namespace misfit {
 /// What a measurement adds to the log-likelihood; 0 where it was not used.
 [[nodiscard]] double log_density(const FilterTrace& trace, std::size_t place);
 
-/// The penalised log-likelihood of an estimate's data at any parameters: the filter run anew, nothing held.
+/// The penalised log-likelihood of an estimate's data at any parameters: the filter run anew, nothing fixed.
 class ExactObjective {
  public:
   /// Keeps a pointer.
@@ -29,11 +29,11 @@ class ExactObjective {
 
 /// First derivatives of the exact objective, log prior and roughness in closed form (what a stiff roughness says of a line is a difference
 /// of large numbers), the log-likelihood by central differences (to one side where the model cannot be run on the other): 1e-3 of a noise's
-/// logarithm; 0.05 sigma along each principal axis of the covariance that the held gains give. One parameter alone, moved by a share of its
-/// sigma, would be no small step where others can stand in for it: these do not go along.
+/// logarithm; 0.05 sigma along each principal axis of the covariance that the fixed gains give. One parameter alone, moved by a share of
+/// its sigma, would be no small step where others can stand in for it: these do not go along.
 struct LikelihoodDerivatives {
   Eigen::VectorXd gradient;  ///< by the free parameters, then by the logarithms of the noise
-  /// Fisher information of the counted measurements over the same unknowns, nothing held: with innovations e and their variances S,
+  /// Fisher information of the counted measurements over the same unknowns, nothing fixed: with innovations e and their variances S,
   /// Σ ∂e ∂e/S + ½ Σ ∂S ∂S/S² [DK]. Unlike that of the Gauss–Newton steps it knows that gains and variances move with the parameters, and
   /// that curves and noise are estimated together.
   Eigen::MatrixXd information;

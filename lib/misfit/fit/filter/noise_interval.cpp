@@ -12,7 +12,7 @@ class Paths {
   Paths(const FilterEstimate& estimate, int threads)
       : estimate_(estimate),
         threads_(threads),
-        bounds_(pack(estimate.noise, estimate.model.system->spec(), estimate.around)),
+        bounds_(pack(estimate.noise, estimate.model.system->spec(), estimate.reference)),
         here_(Eigen::Map<const Eigen::VectorXd>(estimate.noise_fit.logs.data(), estimate.noise_fit.logs.size())),
         joint_(estimate.joint_covariance.bottomRightCorner(here_.size(), here_.size())) {
     scale_ = Eigen::VectorXd::Ones(here_.size());
@@ -33,10 +33,10 @@ class Paths {
  private:
   static Eigen::VectorXd direction(const Eigen::MatrixXd& C, Eigen::Index j) { return C.col(j) / std::sqrt(C(j, j)); }
 
-  /// Unknown ones are held, as in the joint covariance.
+  /// Unknown ones are fixed, as in the joint covariance.
   [[nodiscard]] Eigen::MatrixXd covariance(const Eigen::VectorXd& logs) const {
     const LinearisedRuns runs{&estimate_.forced, &estimate_.data, &estimate_.traces};
-    Eigen::MatrixXd information = noise_information(runs, {logs.data(), logs.data() + logs.size()}, estimate_.around, threads_);
+    Eigen::MatrixXd information = noise_information(runs, {logs.data(), logs.data() + logs.size()}, estimate_.reference, threads_);
     pin_unknown(estimate_.noise_fit, information);
     return scale_.asDiagonal() * information.inverse() * scale_.asDiagonal();
   }

@@ -16,7 +16,7 @@ namespace misfit {
 /// Here the sigma goes along: over the logarithms φ of the noise (pack()) the end for φ_j is where the path dφ/dz = C(φ) e_j / √C_jj(φ) is
 /// at z = ± 1.96, with C the inverse of the Fisher information there [AN]: the direction in which the others make up for φ_j, each
 /// step as long as a sigma is at that place. One step by the midpoint rule; with C in proportion to a constant it is the usual interval of
-/// the logarithm. C(φ) is that of the linearised filter with the parameters held, scaled at the estimate to the joint covariance.
+/// the logarithm. C(φ) is that of the linearised filter with the parameters fixed, scaled at the estimate to the joint covariance.
 ///
 /// `which`: places in pack(). None where the estimate has no joint covariance, or nothing is known of the parameter (at its bound, sigma of
 /// the logarithm above 1). The answer does not depend on `threads`.

@@ -43,9 +43,9 @@ bool same_time(const NoiseFit& a, const NoiseFit& b) {
 std::vector<NoiseFit> noise_maxima(const LinearisedRuns& runs, const FilterNoise& start, const NoiseSearch& search) {
   std::vector<NoiseFit> fits;
   for (const double share : grid) {
-    const FilterNoise there = with_time(start, share * search.around.force_time);
-    fits.push_back(fit_noise(runs, there, {search.around, search.threads, first_iterations}));
-    fits.push_back(fit_noise(runs, with_usual_coloured(there, search.around), {search.around, search.threads, first_iterations}));
+    const FilterNoise there = with_time(start, share * search.reference.force_time);
+    fits.push_back(fit_noise(runs, there, {search.reference, search.threads, first_iterations}));
+    fits.push_back(fit_noise(runs, with_usual_coloured(there, search.reference), {search.reference, search.threads, first_iterations}));
   }
   sort_by_height(fits);
   fits.resize(std::min(fits.size(), carried_on));

@@ -38,7 +38,7 @@ bool leads_away(LikelihoodAscent& at, const End& from, int threads) {
   constexpr double another = 0.2;  // relative change of a noise
   at.gauss_newton_step();
   if (!moved(at, from.point.theta)) return false;
-  const NoiseFit now = fit_noise(at.runs(), from.point.noise, {at.out.around, threads, kRefinements});
+  const NoiseFit now = fit_noise(at.runs(), from.point.noise, {at.out.reference, threads, kRefinements});
   if (!std::isfinite(now.minus_log_density)) return false;
   return !std::equal(from.sigma.begin(), from.sigma.end(), now.noise.channels.begin(),
                      [](double before, const ChannelNoise& channel) { return std::abs(level(channel) / before - 1.0) < another; });
@@ -65,8 +65,8 @@ void weigh_outputs_otherwise(LikelihoodAscent& at, const AscentRounds& rounds) {
   try {
     const std::vector<std::string> words = weigh_outputs_otherwise(at.out.model, best, search);
     at.out.notes.insert(at.out.notes.end(), words.begin(), words.end());
-  } catch (const TimeSpent&) {
-    const Unhurried back;
+  } catch (const TimeLimitReached&) {
+    const SuspendedTimeLimit back;
     at.return_to(best.point);
     throw;
   }

@@ -13,7 +13,7 @@ struct AscentRounds {
 
 /// weigh_outputs_otherwise() (inference/output_weights.h) of a search of the filter, rounds of LikelihoodAscent::iterate() from each
 /// weighing. A weighing leads away where a step of the parameters moves one by more than five sigmas and a noise about it differs by a
-/// fifth. TimeSpent: the search stands at the highest end so far.
+/// fifth. TimeLimitReached: the search stands at the highest end so far.
 void weigh_outputs_otherwise(LikelihoodAscent& at, const AscentRounds& rounds);
 
 }  // namespace misfit

@@ -10,7 +10,7 @@ namespace misfit {
 
 /// What the free parameters' being estimated costs the noise's likelihood. Maximum likelihood of the noise takes for no noise what the
 /// curves followed of it; a density over the parameters integrated instead of maximised does not [PT]: log-likelihood − ½ log det N(φ),
-/// with φ the logarithms of the noise and N the parameters' information (gains held) with roughness and priors. For measurements that are
+/// with φ the logarithms of the noise and N the parameters' information (gains fixed) with roughness and priors. For measurements that are
 /// independent that is n − p in place of n under the sum of squares.
 struct RestrictedLikelihood {
   Eigen::VectorXd slope;  ///< of −½ log det N by φ: −½ tr(N⁻¹ ∂N/∂φᵢ)

@@ -66,7 +66,7 @@ double shortest_period(const FilterEstimate& estimate) {
 
 std::string warning_of_slow_force(const FilterEstimate& estimate) {
   const double time = estimate.noise.force_time, period = shortest_period(estimate);
-  if (estimate.around.time_held || !(time > period)) return "";
+  if (estimate.reference.time_is_given || !(time > period)) return "";
   const SystemSpec& spec = estimate.model.system->spec();
   std::string strengths;
   for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {

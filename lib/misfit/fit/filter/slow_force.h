@@ -12,7 +12,7 @@ namespace misfit {
 
 /// A random force that keeps its value for longer than the motion's shortest period is hardly random beside it: what changes as slowly and
 /// is no larger (an offset, dry friction, drag) may be attributed to it, and the model's own parameters for such effects come out too small
-/// with intervals that do not know it. Says so, with time, period and strength; empty where the force is shorter, 0 or held white.
+/// with intervals that do not know it. Says so, with time, period and strength; empty where the force is shorter, 0 or given as white.
 [[nodiscard]] std::string warning_of_slow_force(const FilterEstimate& estimate);
 
 }  // namespace misfit

@@ -251,7 +251,7 @@ void take_variance_inside_bounds(const Regressor& regressor, const FittedModel& 
     others.N.col(c).setZero();
     others.g[c] = 0.0;
   }
-  std::vector<Penalty> penalties = with_weights_held(out.penalties);
+  std::vector<Penalty> penalties = with_fixed_weights(out.penalties);
   const PenalisedFit of_others = estimate_smoothing(others, penalties);
   if (!of_others.ok) return;
   const double sigma2 = std::max(here.rss / std::max(here.count - of_others.edf, 1.0), 1e-300);

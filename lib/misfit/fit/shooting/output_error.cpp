@@ -31,17 +31,17 @@ class Estimator {
         regression_says_driven_(options.from_regression && !start.fit.method.empty() ? start.fit.says_driven() : std::nullopt),
         setting_(options.keep_roughness ? with_noise(start, setting_of(start.model, experiments, options))
                                         : setting_of(start.model, experiments, options)),
-        penalties_(options.keep_roughness ? with_weights_held(start.penalties)
+        penalties_(options.keep_roughness ? with_fixed_weights(start.penalties)
                                           : curve_penalties(start.model)),  // not those of a regression, whose noise is another one
         shooting_(start.model, experiments, {setting_.sigma, setting_.state_scale}, start_states(setting_)),
-        integration_(shooting_, experiments, start.integration, options.coloured),
+        integration_(shooting_, experiments, start.integration, options.thorough),
         initial_states_(start.initial_states) {}
 
   FittedModel run() {
     try {
       return run_to_the_end();
-    } catch (const TimeSpent& spent) {
-      const Unhurried writing_up;
+    } catch (const TimeLimitReached& spent) {
+      const SuspendedTimeLimit writing_up;
       return cut_off(spent);
     }
   }
@@ -62,7 +62,7 @@ class Estimator {
     }
     const Start start{shooting_.state(), penalties_};
     FittedModel out = from_segments();
-    return stuck_ && options_.coloured ? again_with_short_steps(start, out) : out;
+    return stuck_ && options_.thorough ? again_with_short_steps(start, out) : out;
   }
 
   struct Start {
@@ -97,7 +97,7 @@ class Estimator {
     shooting_.set_sigma(setting_.sigma);
     shooting_.forget_failure();
     penalties_ = start.penalties;
-    end_is_present_ = false;
+    is_linearised_ = false;
     first_misfit_ = std::exchange(stuck_, std::nullopt);
     largest_radius_ = short_steps;
     FittedModel second = from_segments();
@@ -106,12 +106,12 @@ class Estimator {
 
   /// Where the search was when its time was spent: one trajectory from there, or, where the model cannot be run so, what the segments
   /// followed.
-  FittedModel cut_off(const TimeSpent& spent) {
+  FittedModel cut_off(const TimeLimitReached& spent) {
     shooting_.forget_failure();
-    last_.converged = end_is_present_ = false;
+    last_.converged = is_linearised_ = false;
     last_.message = in_words(spent);
-    if (!look_at_the_end() || !end_.smoothed.ok) return failed(last_.message);
-    last_.message = in_words(spent, "sum of squares", end_.linearised.rss);
+    if (!linearise_here() || !estimate_.smoothed.ok) return failed(last_.message);
+    last_.message = in_words(spent, "sum of squares", estimate_.linearised.rss);
     FittedModel out = finish();
     if (out.fit.status == FitStatus::declined) {  // that it does not follow the motion yet says nothing
       out.fit.status = FitStatus::not_converged;
@@ -124,11 +124,12 @@ class Estimator {
 
   bool solve(const ShootingPass& pass) {
     last_ = shooting_.solve(pass, penalties_);
-    if (last_.out_of_time) throw TimeSpent(last_.message);
+    if (last_.out_of_time) throw TimeLimitReached(last_.message);
     return last_.usable;
   }
 
-  /// Segments six times as long; by a smaller factor where the simulation from the present initial states fails.
+  /// Segments six times as long; by a smaller factor where the simulation from the present initial states fails, or predicts
+  /// worse than a constant would.
   bool lengthen(ShootingPass& pass) {
     for (const double factor : {6.0, 3.0, 2.0, 1.5, 1.25}) {
       const Shooting::State before = shooting_.state();
@@ -167,11 +168,12 @@ class Estimator {
       integration_.plan();
     }
     bool found = search(lengthened);
-    if (found && options_.coloured) weigh_outputs();
-    while (found && settled_ && !integration_.negligible_at(end_.runs, end_.smoothed.covariance)) found = approach() || search({});
+    if (found && options_.thorough) weigh_outputs();
+    while (found && settled_ && !integration_.negligible_at(estimate_.runs, estimate_.smoothed.covariance))
+      found = approach() || search({});
     if (!found) return failed(why_);
-    if (settled_ && options_.coloured && !newton_steps() && reach_minimum()) static_cast<void>(newton_steps());
-    const Unhurried writing_up;
+    if (settled_ && options_.thorough && !newton_steps() && reach_minimum()) static_cast<void>(newton_steps());
+    const SuspendedTimeLimit writing_up;
     return finish();
   }
 
@@ -186,22 +188,22 @@ class Estimator {
     for (int round = 0; round < most_rounds && !settled_; ++round) {
       if (round > 0 && any_chosen(penalties_) && lengthened.length > 0 && !solve(lengthened)) return stopped(last_.message);
       if (!solve(whole) && !(integration_.plan_finely() && solve(whole))) return stopped(last_.message);
-      if (!shooting_.linearise(end_.linearised, &end_.runs)) return stopped("");
-      end_.smoothed = estimate_smoothing(end_.linearised, penalties_);
-      if (!end_.smoothed.ok) return stopped(singular_message(end_.linearised));
-      const double edf = end_.smoothed.edf;
-      const std::vector<double> sigma = channel_sigmas({shooting_, end_.runs, experiments_}, edf);
+      if (!shooting_.linearise(estimate_.linearised, &estimate_.runs)) return stopped("");
+      estimate_.smoothed = estimate_smoothing(estimate_.linearised, penalties_);
+      if (!estimate_.smoothed.ok) return stopped(singular_message(estimate_.linearised));
+      const double edf = estimate_.smoothed.edf;
+      const std::vector<double> sigma = channel_sigmas({shooting_, estimate_.runs, experiments_}, edf);
       const bool same_roughness = !any_chosen(penalties_) || std::abs(edf - before) < 0.1;
       settled_ = same_roughness && same_noise(sigma);
       before = edf;
       shooting_.set_sigma(sigma);
     }
-    end_is_present_ = false;
+    is_linearised_ = false;
     return true;
   }
 
   /// An end of search() to which it is possible to return.
-  struct Ended {
+  struct Snapshot {
     Shooting::State at;
     std::vector<Penalty> penalties;
     std::vector<double> sigma;
@@ -210,47 +212,48 @@ class Estimator {
     double height;
   };
 
-  /// After look_at_the_end().
-  [[nodiscard]] Ended ended() const {
+  /// After linearise_here().
+  [[nodiscard]] Snapshot snapshot() const {
     return {shooting_.state(), penalties_,
             shooting_.sigma(), last_,
-            settled_,          height_of(end_, {shooting_, end_.runs, experiments_}, penalties_)};
+            settled_,          height_of(estimate_, {shooting_, estimate_.runs, experiments_}, penalties_)};
   }
 
-  void return_to(const Ended& end) {
+  void return_to(const Snapshot& end) {
     shooting_.restore(end.at);
     shooting_.set_sigma(end.sigma);
     shooting_.forget_failure();
     penalties_ = end.penalties;
     last_ = end.last;
     settled_ = end.settled;
-    end_is_present_ = false;
+    is_linearised_ = false;
   }
 
-  /// inference/output_weights.h; stands at the highest end, end_ of it.
+  /// inference/output_weights.h; stands at the highest end, estimate_ of it.
   void weigh_outputs() {
-    if (other_weighings(shooting_.model()).empty() || !look_at_the_end() || !end_.smoothed.ok) return;
-    Ended best = ended();
-    const auto end_from = [&](const Weighing& weighing, const Ended& from) {
-      return ends_elsewhere(weighing, from) ? std::optional(ended()) : std::nullopt;
+    if (other_weighings(shooting_.model()).empty() || !linearise_here() || !estimate_.smoothed.ok) return;
+    Snapshot best = snapshot();
+    const auto end_from = [&](const Weighing& weighing, const Snapshot& from) {
+      return settles_elsewhere(weighing, from) ? std::optional(snapshot()) : std::nullopt;
     };
     try {
-      other_maxima_ = weigh_outputs_otherwise<Ended>(shooting_.model(), best, {end_from, [&](const Ended& end) { return_to(best = end); }});
-    } catch (const TimeSpent&) {  // what there is stands
+      other_maxima_ =
+          weigh_outputs_otherwise<Snapshot>(shooting_.model(), best, {end_from, [&](const Snapshot& end) { return_to(best = end); }});
+    } catch (const TimeLimitReached&) {  // what there is stands
       return_to(best);
     }
-    const Unhurried back;
-    static_cast<void>(look_at_the_end());
+    const SuspendedTimeLimit back;
+    static_cast<void>(linearise_here());
   }
 
   /// A search that begins with another noise of one output. False: it leads nowhere, or back.
-  bool ends_elsewhere(const Weighing& weighing, const Ended& from) {
+  bool settles_elsewhere(const Weighing& weighing, const Snapshot& from) {
     constexpr double another = 0.1;  // relative change of a noise
     constexpr int few_iterations = 8;
     std::vector<double> sigma = from.sigma;
     sigma[weighing.output] *= weighing.factor;
     shooting_.set_sigma(sigma);
-    const double edf = end_.smoothed.edf;
+    const double edf = estimate_.smoothed.edf;
     if (!solve({0, 10.0, std::min(1e8, largest_radius_), few_iterations, 1e-3})) return false;
     const auto led_away = [&] {
       const std::vector<Segment> runs = shooting_.run(false);
@@ -260,7 +263,7 @@ class Estimator {
       shooting_.set_sigma(now);
       return away;
     };
-    return led_away() && search({}) && settled_ && look_at_the_end() && end_.smoothed.ok && led_away();
+    return led_away() && search({}) && settled_ && linearise_here() && estimate_.smoothed.ok && led_away();
   }
 
   bool stopped(const std::string& why) {
@@ -276,7 +279,7 @@ class Estimator {
     constexpr double radius = 1e12;  // with a smaller one, directions that the data determine by a millionth of the others creep
     const bool solved = solve({0, 10.0, radius, 100, 1e-13});
     last_ = then;
-    end_is_present_ = false;
+    is_linearised_ = false;
     if (solved) return true;
     shooting_.restore(before);
     shooting_.forget_failure();
@@ -292,9 +295,9 @@ class Estimator {
     double before = near / shrinks;
     Eigen::VectorXd last;
     Shooting::State best = shooting_.state();
-    for (int k = 0; k < most && look_at_the_end() && end_.smoothed.ok; ++k) {
-      const Eigen::VectorXd step = newton_step(end_.linearised, penalties_, end_.smoothed.covariance);
-      const Eigen::VectorXd here = in_sigmas(step, end_.smoothed.covariance);
+    for (int k = 0; k < most && linearise_here() && estimate_.smoothed.ok; ++k) {
+      const Eigen::VectorXd step = newton_step(estimate_.linearised, penalties_, estimate_.smoothed.covariance);
+      const Eigen::VectorXd here = in_sigmas(step, estimate_.smoothed.covariance);
       const double size = here.cwiseAbs().maxCoeff();
       if (!(size < shrinks * before)) break;
       if (size < negligible && !noise_moves()) return true;
@@ -302,12 +305,12 @@ class Estimator {
       before = size;
       const double rate = last.size() > 0 ? std::clamp(here.dot(last) / last.squaredNorm(), -highest_rate, highest_rate) : 0.0;
       last = here;
-      if (!shooting_.move_to(end_.linearised.theta + step / (1.0 - rate))) break;
-      end_is_present_ = false;
+      if (!shooting_.move_to(estimate_.linearised.theta + step / (1.0 - rate))) break;
+      is_linearised_ = false;
     }
     shooting_.restore(best);
     shooting_.forget_failure();
-    end_is_present_ = false;
+    is_linearised_ = false;
     return before < few_digits;
   }
 
@@ -315,10 +318,10 @@ class Estimator {
   bool noise_moves() {
     constexpr double negligible = 1e-6;  // relative
     if (any_chosen(penalties_)) return false;
-    const std::vector<double> sigma = channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf);
+    const std::vector<double> sigma = channel_sigmas({shooting_, estimate_.runs, experiments_}, estimate_.smoothed.edf);
     if (same_noise(sigma, negligible)) return false;
     shooting_.set_sigma(sigma);
-    end_is_present_ = false;
+    is_linearised_ = false;
     return true;
   }
 
@@ -327,21 +330,23 @@ class Estimator {
     std::string which = linearised.N.size() > 0 ? undetermined(model, linearised) : "";
     if (which.empty() && linearised.N.size() > 0)
       which = undetermined_starts(model, precision_of(linearised, penalties_, 1.0), experiments_);
-    return at_the_end(which.empty() ? "the information matrix is singular: some parameters are not determined by these data" : which);
+    return undetermined_message(which.empty() ? "the information matrix is singular: some parameters are not determined by these data"
+                                              : which);
   }
 
-  std::string at_the_end(const std::string& which) {
+  std::string undetermined_message(const std::string& which) {
     constexpr double near = 1.0, alike = 1.0;  // sigma; of a log-likelihood
     const std::vector<Segment> runs = shooting_.run(false);
-    const EndOfSearch end{shooting_, runs, experiments_};
+    const SimulatedRuns end{shooting_, runs, experiments_};
     const double left =
-        end_.smoothed.ok ? largest_in_sigmas(newton_step(end_.linearised, penalties_, end_.smoothed.covariance), end_.smoothed.covariance)
-                         : 0.0;
+        estimate_.smoothed.ok
+            ? largest_in_sigmas(newton_step(estimate_.linearised, penalties_, estimate_.smoothed.covariance), estimate_.smoothed.covariance)
+            : 0.0;
     stuck_ = misfit_of(end);
     std::string unsettled;
-    if (!last_.converged || left > near) unsettled = "the search ended before it came to a maximum";
+    if (!last_.converged || left > near) unsettled = "the search snapshot before it came to a maximum";
     if (first_misfit_ && !(std::abs(*first_misfit_ - *stuck_) < alike))
-      unsettled = "two searches from these values ended at different points";
+      unsettled = "two searches from these values snapshot at different points";
     return why_undetermined(which, unsettled, end);
   }
 
@@ -363,12 +368,12 @@ class Estimator {
   }
 
   /// The Gaussian and the runs at the present values, noise and roughness as they are.
-  bool look_at_the_end() {
-    if (end_is_present_) return true;
-    std::vector<Penalty> penalties = with_weights_held(penalties_);
-    if (!shooting_.linearise(end_.linearised, &end_.runs)) return false;
-    end_.smoothed = estimate_smoothing(end_.linearised, penalties, 1.0);
-    end_is_present_ = true;
+  bool linearise_here() {
+    if (is_linearised_) return true;
+    std::vector<Penalty> penalties = with_fixed_weights(penalties_);
+    if (!shooting_.linearise(estimate_.linearised, &estimate_.runs)) return false;
+    estimate_.smoothed = estimate_smoothing(estimate_.linearised, penalties, 1.0);
+    is_linearised_ = true;
     return true;
   }
 
@@ -378,23 +383,23 @@ class Estimator {
     fit.method = estimators::output_error.name;
     fit.status = last_.converged && settled_ ? FitStatus::converged : FitStatus::not_converged;
     fit.message = last_.converged && !settled_ ? "noise variances and smoothing parameters have not converged" : last_.message;
-    if (!look_at_the_end()) return failed("");
-    if (!end_.smoothed.ok) return failed(singular_message(end_.linearised));
-    if (const std::string which = undetermined(out.model, end_.linearised); !which.empty()) return failed(at_the_end(which));
+    if (!linearise_here()) return failed("");
+    if (!estimate_.smoothed.ok) return failed(singular_message(estimate_.linearised));
+    if (const std::string which = undetermined(out.model, estimate_.linearised); !which.empty()) return failed(undetermined_message(which));
     integration_.describe(out);
-    set_noise(shooting_, experiments_, end_.degrees(), fit);
+    set_noise(shooting_, experiments_, estimate_.degrees(), fit);
     const Eigen::MatrixXd covariance =
-        describe_estimates(end_, {shooting_, end_.runs, experiments_}, {setting_.states, penalties_, options_.coloured}, out);
-    predictions_of({shooting_, end_.runs, experiments_}, covariance, fit);
+        describe_estimates(estimate_, {shooting_, estimate_.runs, experiments_}, {setting_.states, penalties_, options_.thorough}, out);
+    predictions_of({shooting_, estimate_.runs, experiments_}, covariance, fit);
     errors_of(experiments_, fit);
     set_initial_states(shooting_, experiments_, out);
-    fit.facts["effective_parameters"] = format_value(end_.smoothed.edf);
-    add_remarks(end_, covariance, out);
+    fit.facts["effective_parameters"] = format_value(estimate_.smoothed.edf);
+    add_remarks(estimate_, covariance, out);
     fit.linearisations = shooting_.linearisations();
     return out;
   }
 
-  void add_remarks(const Ending& end, const Eigen::MatrixXd& covariance, FittedModel& out) const {
+  void add_remarks(const LinearisedEstimate& end, const Eigen::MatrixXd& covariance, FittedModel& out) const {
     Fit& fit = out.fit;
     const Eigen::Index columns = out.model.theta().size();
     const InputTable inputs = input_table(experiments_.front(), out.model);
@@ -409,14 +414,15 @@ class Estimator {
     const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
     classify_motion(out.model, {setting_, experiments_, unknowns, regression_says_driven_}, fit);
     reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
-    if (end.degrees() < kFewestDegrees && !out.model.noise_held()) withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
+    if (end.degrees() < kFewestDegrees && !out.model.noise_is_given())
+      withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }
 
   /// From near the estimate to it. False if it is not near, if the noise is another one there, or the way is not found.
   bool approach() {
     constexpr double few = 3.0;  // sigma
-    if (!(integration_.shift() < few) || !reach_minimum() || !look_at_the_end() || !end_.smoothed.ok) return false;
-    return same_noise(channel_sigmas({shooting_, end_.runs, experiments_}, end_.smoothed.edf));
+    if (!(integration_.shift() < few) || !reach_minimum() || !linearise_here() || !estimate_.smoothed.ok) return false;
+    return same_noise(channel_sigmas({shooting_, estimate_.runs, experiments_}, estimate_.smoothed.edf));
   }
 
   [[nodiscard]] bool same_noise(const std::vector<double>& sigma, double difference = 0.01) const {
@@ -433,8 +439,8 @@ class Estimator {
   Shooting shooting_;
   OutputErrorIntegration integration_;
   std::vector<Eigen::VectorXd> initial_states_;  ///< where the start is a fit
-  Ending end_;
-  bool end_is_present_ = false;  ///< end_ is of the present values, noise and roughness
+  LinearisedEstimate estimate_;
+  bool is_linearised_ = false;  ///< estimate_ is of the present values, noise and roughness
   LeastSquares::Summary last_;
   double largest_radius_ = std::numeric_limits<double>::infinity();  ///< of trust regions
   std::optional<double> stuck_, first_misfit_;                       ///< misfit where parameters are not determined; in the first search

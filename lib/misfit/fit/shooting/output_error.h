@@ -17,7 +17,10 @@ struct OutputErrorStart {
       true;                ///< the parameters are an equation-error fit; false: they are just some values, begin with very short segments
   double frequency = 0.0;  ///< fastest motion [rad/s]; 0: from the data
   bool keep_roughness = false;  ///< the start's penalties hold and its noise is begun with: for refits of nearly the same data
-  bool coloured = true;  ///< false: sigmas of white residuals and known roughness, for fits by the thousand whose scatter is looked at
+  /// False: for fits by the thousand whose scatter is looked at. Sigmas are then those of white residuals and known roughness, the
+  /// integration is not checked at the estimate, no other weighting of the outputs and no second start is tried, and no Newton steps follow
+  /// the search.
+  bool thorough = true;
 };
 
 /// The whole trajectory of a deterministic model against the measured channels, by multiple shooting in Ceres (lib/misfit/README.md, 5.4):

@@ -9,7 +9,7 @@
 
 namespace misfit::output_error_parts {
 
-double height_of(const Ending& end, const EndOfSearch& search, const std::vector<Penalty>& penalties) {
+double height_of(const LinearisedEstimate& end, const SimulatedRuns& search, const std::vector<Penalty>& penalties) {
   const Shooting& shooting = search.shooting;
   double height = log_prior(shooting.model(), penalties) - 0.5 * end.linearised.rss;
   for (std::size_t e = 0; e < search.experiments.size(); ++e) {
@@ -20,7 +20,8 @@ double height_of(const Ending& end, const EndOfSearch& search, const std::vector
   return any_chosen(penalties) ? marginal_loglik(end.linearised, penalties, height) : height;
 }
 
-Eigen::MatrixXd describe_estimates(const Ending& end, const EndOfSearch& search, const DescribedWith& with, FittedModel& out) {
+Eigen::MatrixXd describe_estimates(const LinearisedEstimate& end, const SimulatedRuns& search, const DescribedWith& with,
+                                   FittedModel& out) {
   const RowMatrix visited = visited_quantities(out.model, search.experiments, with.states);
   const Eigen::MatrixXd& plain = end.smoothed.covariance;
   const Eigen::Index columns = out.model.theta().size();
@@ -38,7 +39,7 @@ Eigen::MatrixXd describe_estimates(const Ending& end, const EndOfSearch& search,
   describe_roughness(out.model, roughness_paths(end.linearised, with.penalties, 1.0), out.fit);
   describe_freedom(out.model, end.linearised, with.penalties, 1.0, out.fit);
   out.fit.facts["covariance"] = in_words(coloured);
-  if (degrees >= kFewestDegrees && degrees < kShortRecord && !out.model.noise_held())
+  if (degrees >= kFewestDegrees && degrees < kShortRecord && !out.model.noise_is_given())
     add_student_intervals(std::min(degrees, coloured.degrees), out.fit);
   const auto& outputs = out.model.system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[o]);

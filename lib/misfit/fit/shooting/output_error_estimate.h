@@ -9,7 +9,7 @@
 namespace misfit::output_error_parts {
 
 /// Normal equations, Gaussian posterior and simulated segments at the estimate.
-struct Ending {
+struct LinearisedEstimate {
   NormalEquations linearised;
   PenalisedFit smoothed;
   std::vector<Segment> runs;
@@ -18,7 +18,7 @@ struct Ending {
 
 /// [log-likelihood] By which ends are compared: with priors and the noise of every output; where roughness is chosen, with the parameters
 /// integrated out (marginal_loglik()).
-[[nodiscard]] double height_of(const Ending& end, const EndOfSearch& search, const std::vector<Penalty>& penalties);
+[[nodiscard]] double height_of(const LinearisedEstimate& end, const SimulatedRuns& search, const std::vector<Penalty>& penalties);
 
 /// What estimates are described with.
 struct DescribedWith {
@@ -29,6 +29,6 @@ struct DescribedWith {
 
 /// Parameters, curves and trim with the covariance of all unknowns, which is returned: allowing for autocorrelated residuals, and what
 /// white ones would give beside it.
-Eigen::MatrixXd describe_estimates(const Ending& end, const EndOfSearch& search, const DescribedWith& with, FittedModel& out);
+Eigen::MatrixXd describe_estimates(const LinearisedEstimate& end, const SimulatedRuns& search, const DescribedWith& with, FittedModel& out);
 
 }  // namespace misfit::output_error_parts

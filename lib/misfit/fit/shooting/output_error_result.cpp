@@ -25,7 +25,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double follows = 0.5;  // of the motion's own size: a model that leaves less explains most of it
 
 /// Predicted − measured of output o, per experiment and sample; NaN where it does not count.
-std::vector<std::vector<double>> channel_residuals(const EndOfSearch& end, std::size_t o) {
+std::vector<std::vector<double>> channel_residuals(const SimulatedRuns& end, std::size_t o) {
   const auto& [shooting, runs, experiments] = end;
   std::vector<std::vector<double>> out;
   for (std::size_t e = 0; e < runs.size(); ++e) {
@@ -89,7 +89,7 @@ Squares squares_of(const std::vector<std::vector<double>>& residuals) {
 }
 
 /// Residuals of every output.
-std::vector<Squares> residuals_of_outputs(const EndOfSearch& end) {
+std::vector<Squares> residuals_of_outputs(const SimulatedRuns& end) {
   std::vector<Squares> out;
   for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) out.push_back(squares_of(channel_residuals(end, o)));
   return out;
@@ -110,7 +110,7 @@ std::vector<std::optional<double>> noise_by_residuals(const std::vector<Squares>
 
 }  // namespace
 
-std::vector<double> channel_sigmas(const EndOfSearch& end, double edf) {
+std::vector<double> channel_sigmas(const SimulatedRuns& end, double edf) {
   std::vector<double> sigma = end.shooting.sigma();
   const std::vector<std::optional<double>> found = noise_by_residuals(residuals_of_outputs(end), edf);
   for (std::size_t o = 0; o < sigma.size(); ++o) {
@@ -119,7 +119,7 @@ std::vector<double> channel_sigmas(const EndOfSearch& end, double edf) {
   return sigma;
 }
 
-void warn_of_unknown_noise(const EndOfSearch& end, double edf, Fit& fit) {
+void warn_of_unknown_noise(const SimulatedRuns& end, double edf, Fit& fit) {
   const Model& model = end.shooting.model();
   const auto& outputs = model.system->spec().outputs;
   const std::vector<Squares> residuals = residuals_of_outputs(end);
@@ -133,22 +133,22 @@ void warn_of_unknown_noise(const EndOfSearch& end, double edf, Fit& fit) {
   }
 }
 
-/// RMS of a channel's residuals in units of its sigma where that is held, so that only their correlation counts; else 1.
-std::vector<double> held_sizes(const EndOfSearch& end) {
+/// RMS of a channel's residuals in units of its sigma where that is given, so that only their correlation counts; else 1.
+std::vector<double> sizes_where_given(const SimulatedRuns& end) {
   std::vector<double> out;
   for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) {
     const auto [squares, count] = squares_of(channel_residuals(end, o));
     const bool held = end.shooting.model().known_noise[o].fixed && squares > 0.0;
-    out.push_back(held ? std::sqrt(squares / count) / end.shooting.sigma()[o] : 1.0);
+    out.push_back(held_out ? std::sqrt(squares / count) / end.shooting.sigma()[o] : 1.0);
   }
   return out;
 }
 
-std::vector<ResidualRows> residual_rows(const EndOfSearch& end) {
+std::vector<ResidualRows> residual_rows(const SimulatedRuns& end) {
   const auto& [shooting, runs, experiments] = end;
   std::vector<ResidualRows> out;
   const std::size_t ny = shooting.model().outputs();
-  const std::vector<double> sizes = held_sizes(end);
+  const std::vector<double> sizes = sizes_where_given(end);
   for (std::size_t e = 0; e < runs.size(); ++e) {
     ResidualRows rows{runs[e].y_rows, Eigen::VectorXd(runs[e].y_rows.rows()), {}};
     for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
@@ -168,7 +168,7 @@ std::vector<ResidualRows> residual_rows(const EndOfSearch& end) {
   return out;
 }
 
-void predictions_of(const EndOfSearch& end, const Eigen::MatrixXd& covariance, Fit& fit) {
+void predictions_of(const SimulatedRuns& end, const Eigen::MatrixXd& covariance, Fit& fit) {
   const auto& [shooting, runs, experiments] = end;
   const auto& outputs = shooting.model().system->spec().outputs;
   const Eigen::Index ny = outputs.size();
@@ -277,9 +277,9 @@ void show_segments(Shooting& shooting, const std::vector<Signals>& experiments, 
 }
 
 void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
-  double loglik = 0.0, held_loglik = 0.0;
+  double loglik = 0.0, held_out_loglik = 0.0;
   std::map<std::string, std::array<double, 4>> sums;  // squares, count, held-out squares, held-out count
-  bool any_held = false;
+  bool any_held_out = false;
   for (ChannelPrediction& p : fit.predictions) {
     const auto experiment = std::find_if(experiments.begin(), experiments.end(), [&](const Signals& s) { return s.name == p.experiment; });
     auto& s = sums[p.channel];
@@ -290,16 +290,16 @@ void errors_of(const std::vector<Signals>& experiments, Fit& fit) {
       if (!std::isfinite(r)) continue;
       record.add(p.measured[i], p.predicted[i], p.held_out[i]);
       const double term = -0.5 * r * r / (sigma * sigma) - std::log(sigma) - 0.5 * std::log(2.0 * pi);
-      const bool held = p.held_out[i];
-      any_held = any_held || held;
-      (held ? held_loglik : loglik) += term;
-      s[held ? 2 : 0] += r * r;
-      s[held ? 3 : 1] += 1.0;
+      const bool held_out = p.held_out[i];
+      any_held_out = any_held_out || held_out;
+      (held_out ? held_out_loglik : loglik) += term;
+      s[held_out ? 2 : 0] += r * r;
+      s[held_out ? 3 : 1] += 1.0;
     }
     record.describe(p, fit);
   }
   fit.loglik = loglik;
-  if (any_held) fit.validation_loglik = held_loglik;
+  if (any_held_out) fit.validation_loglik = held_out_loglik;
   for (const auto& p : fit.predictions) {
     const auto& s = sums[p.channel];
     if (s[1] > 0.0) fit.rms[p.channel] = {std::sqrt(s[0] / s[1]), 0.0, p.unit};
@@ -325,7 +325,7 @@ bool segments_follow(Shooting& shooting, const std::vector<Signals>& experiments
   return true;
 }
 
-double misfit_of(const EndOfSearch& end) {
+double misfit_of(const SimulatedRuns& end) {
   double sum = 0.0;
   for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) {
     const auto [squares, count] = squares_of(channel_residuals(end, o));
@@ -334,7 +334,7 @@ double misfit_of(const EndOfSearch& end) {
   return sum;
 }
 
-std::string why_undetermined(const std::string& which, std::string unsettled, const EndOfSearch& end) {
+std::string why_undetermined(const std::string& which, std::string unsettled, const SimulatedRuns& end) {
   const auto& outputs = end.shooting.model().system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     const Squares residuals = squares_of(channel_residuals(end, o));

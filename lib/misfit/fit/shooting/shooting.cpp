@@ -212,7 +212,7 @@ LeastSquares::Summary Shooting::solve(const ShootingPass& pass, const std::vecto
   LeastSquares::Summary summary = problem.solve(options);
   linearisations_ += summary.linearisations;
   if (!summary.usable) return summary;
-  std::optional<Unhurried> writing_up;
+  std::optional<SuspendedTimeLimit> writing_up;
   if (summary.out_of_time) writing_up.emplace();
   const std::vector<double>& solved = problem.block(theta_block);
   model_.set_theta(Eigen::Map<const Eigen::VectorXd>(solved.data(), std::ssize(free_)));

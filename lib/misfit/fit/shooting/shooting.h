@@ -121,7 +121,7 @@ class Shooting {
   [[nodiscard]] std::optional<double> known_start(std::size_t experiment, std::size_t state) const;
   /// Is it one unknown with that of `shared_with_`?
   [[nodiscard]] bool shared_start(std::size_t experiment, std::size_t state) const;
-  void hold_initial(NormalEquations& out) const;
+  void constrain_initial(NormalEquations& out) const;
   void add_priors(LeastSquares& problem, int theta_block, const std::vector<Penalty>& penalties) const;
   void remember(std::vector<Piece>& pieces, const LeastSquares& problem);
   void note_failure(const Segment& segment, std::size_t experiment);

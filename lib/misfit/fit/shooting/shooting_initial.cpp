@@ -64,7 +64,7 @@ void Shooting::add_initial(LeastSquares& problem, const std::vector<Piece>& piec
   }
 }
 
-void Shooting::hold_initial(NormalEquations& out) const {
+void Shooting::constrain_initial(NormalEquations& out) const {
   const auto columns = std::ssize(free_);
   const Eigen::Index n = model_.states();
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
@@ -75,10 +75,10 @@ void Shooting::hold_initial(NormalEquations& out) const {
       if (const std::optional<double> known = known_start(e, j)) {
         out.N(own, own) += weight;
         out.g[own] += weight * (out.theta[own] - *known);
-        out.held += 1.0;
+        out.constraints += 1.0;
       } else if (shared_start(e, j) && own != with) {
         const double difference = out.theta[own] - out.theta[with];
-        out.held += 1.0;
+        out.constraints += 1.0;
         out.N(own, own) += weight;
         out.N(with, with) += weight;
         out.N(own, with) -= weight;

@@ -123,7 +123,7 @@ bool Shooting::linearise(NormalEquations& out, std::vector<Segment>* runs) {
     out.g.head(columns) += g.head(columns);
     out.g.segment(at, n) = g.tail(n);
   }
-  hold_initial(out);
+  constrain_initial(out);
   return true;
 }
 

@@ -42,7 +42,7 @@ MethodRun Methods::run(const std::string& method) {
   MethodRun out;
   try {
     out = run_in_time(method);
-  } catch (const TimeSpent& spent) {
+  } catch (const TimeLimitReached& spent) {
     out.at.method = out.at.fitted.fit.method = method;
     out.at.fitted.fit.message = in_words(spent);
     if (!estimator(method).info.deterministic && !estimator(method).info.regression_form) {

@@ -36,8 +36,8 @@ bool wants_scan(const Prepared& prepared, const BoundEffect& effect) {
     if (own[c] < 0) return false;
     const bool free = prepared.model.parameters[own[c]].free;
     strength = strength || (free && coefficients[c].kind == CoefficientKind::strength);
-    shape =
-        shape || (free && coefficients[c].kind == CoefficientKind::shape && coefficients[c].scan.count != 0 && !is_given(prepared, own[c]));
+    shape = shape ||
+            (free && coefficients[c].kind == CoefficientKind::shape && coefficients[c].scan.is_scanned() && !is_given(prepared, own[c]));
   }
   return shape && strength;
 }

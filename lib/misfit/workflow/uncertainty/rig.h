@@ -58,7 +58,7 @@ class Rig {
   std::vector<std::string> notes_;
 };
 
-/// Camera parameters that the study perturbs, where its system would estimate them with the calibration as their prior: they are held, so
+/// Camera parameters that the study perturbs, where its system would estimate them with the calibration as their prior: they are fixed, so
 /// that they can be perturbed. Called before the model is prepared.
 void hold_perturbed_camera(Session& session);
 

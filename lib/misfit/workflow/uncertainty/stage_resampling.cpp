@@ -160,7 +160,7 @@ class ResamplingJob {
         p.lower,     p.upper,   {}};
     r.from_best = [&from, &experiments, parameter] {
       auto held = std::make_shared<ProfileObjective>(from, experiments, parameter);
-      return HeldMaximum([held](double value) { return (*held)(value); });
+      return MaximumAtFixedValue([held](double value) { return (*held)(value); });
     };
     return r;
   }

@@ -57,7 +57,7 @@ void StudyChain::make_nominal(Session& session, const std::string& method) {
   from_.fitted.fit = {};
   from_.fitted.fit.noise = nominal_.noise;
   from_.fitted.initial_states.clear();
-  from_.around.reset();
+  from_.reference.reset();
 }
 
 void StudyChain::read_recordings(Session& session) {

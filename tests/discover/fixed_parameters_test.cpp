@@ -1,5 +1,5 @@
 // Numbers of the system that are held at a wrong value, and those that are known.
-#include "misfit/discover/held_parameters.h"
+#include "misfit/discover/fixed_parameters.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ std::vector<std::string> said(const std::map<std::string, double>& sigmas) {
   request.constant_sigmas = sigmas;
   const std::vector<Signals> signals = {record_of_cart({}, {})};
   const FilterEstimate estimate = estimate_filter(assemble(request, registry()), {}, signals);
-  return held_in_words({estimate, signals, registry(), 1}, ScoreTest(estimate), {});
+  return fixed_parameters_in_words({estimate, signals, registry(), 1}, ScoreTest(estimate), {});
 }
 
 TEST(HeldParameters, OneThatTheDataWantOtherwiseIsSaid) {

@@ -1,4 +1,4 @@
-#include "misfit/discover/held_parameters.h"
+#include "misfit/discover/fixed_parameters.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 namespace misfit {
 namespace {
 
-/// The model with the random force in which the system's numbers that are held are free, and nothing else.
-FilterModel with_held_ones_free(const FilterEstimate& estimate) {
+/// The model with the random force in which the system's numbers that are fixed are free, and nothing else.
+FilterModel with_fixed_ones_free(const FilterEstimate& estimate) {
   FilterModel out = estimate.forced;
   for (Parameter& p : out.model.parameters) p.free = false;
   for (const ConstantSpec& constant : out.model.system->spec().constants) {
@@ -25,7 +25,7 @@ FilterModel with_held_ones_free(const FilterEstimate& estimate) {
   return out;
 }
 
-std::string in_words(const HeldParameter& held, double p_value) {
+std::string in_words(const FixedParameter& held, double p_value) {
   return fmt::format("{} is held at {}, and these data want {} ({}drop {}, family-wise {}): free it, unless it is known that well",
                      held.name, in_display_unit(held.value, held.unit), in_display_unit(held.wanted, held.unit, held.sigma),
                      held.actual_drop ? "" : "predicted ", format_value(held.actual_drop.value_or(held.predicted_drop)), p_equals(p_value));
@@ -33,12 +33,12 @@ std::string in_words(const HeldParameter& held, double p_value) {
 
 }  // namespace
 
-std::vector<HeldParameter> held_parameters(const FilterEstimate& estimate, const ScoreTest& score) {
-  std::vector<HeldParameter> out;
-  const FilterModel forced = with_held_ones_free(estimate);
+std::vector<FixedParameter> fixed_parameters(const FilterEstimate& estimate, const ScoreTest& score) {
+  std::vector<FixedParameter> out;
+  const FilterModel forced = with_fixed_ones_free(estimate);
   const std::vector<int> places = forced.model.free_parameters();
   if (places.empty()) return out;
-  const Eigen::MatrixXd columns = columns_with_gains_held(estimate, forced);
+  const Eigen::MatrixXd columns = columns_with_fixed_gains(estimate, forced);
   constexpr double described = 0.01;
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     const ScoreResult result = score.test(columns.col(c));
@@ -51,7 +51,7 @@ std::vector<HeldParameter> held_parameters(const FilterEstimate& estimate, const
   return out;
 }
 
-void free_and_refit(const RefitWork& work, HeldParameter& held) {
+void free_and_refit(const RefitWork& work, FixedParameter& held) {
   Model start = work.without.model;
   Parameter& p = start.parameters[start.find_parameter(held.name)];
   p.free = true;
@@ -76,19 +76,19 @@ void free_and_refit(const RefitWork& work, HeldParameter& held) {
   }
 }
 
-std::vector<std::string> held_in_words(const RefitWork& work, const ScoreTest& score, const HeldSearch& search) {
+std::vector<std::string> fixed_parameters_in_words(const RefitWork& work, const ScoreTest& score, const FixedSearch& search) {
   constexpr double about_as_much = 0.8;
-  std::vector<HeldParameter> held = held_parameters(work.without, score);
+  std::vector<FixedParameter> held = fixed_parameters(work.without, score);
   const double tests = search.families + static_cast<double>(held.size());
-  const auto refused = [&](const HeldParameter& h) { return sidak(h.p_value, tests) >= search.p_accept; };
-  std::erase_if(held, [&](const HeldParameter& h) { return refused(h) || h.predicted_drop < about_as_much * search.best_predicted; });
+  const auto refused = [&](const FixedParameter& h) { return sidak(h.p_value, tests) >= search.p_accept; };
+  std::erase_if(held, [&](const FixedParameter& h) { return refused(h) || h.predicted_drop < about_as_much * search.best_predicted; });
   while (!held.empty()) {
     free_and_refit(work, held.front());
     if (!refused(held.front())) break;
     held.erase(held.begin());
   }
   std::vector<std::string> out;
-  for (const HeldParameter& h : held) out.push_back(in_words(h, sidak(h.p_value, tests)));
+  for (const FixedParameter& h : held) out.push_back(in_words(h, sidak(h.p_value, tests)));
   return out;
 }
 

@@ -1,4 +1,4 @@
-#include "misfit/discover/alias.h"
+#include "misfit/discover/lack_of_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace misfit {
 
-void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out) {
+void report_sensor_imitations(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out) {
   if (out.candidates.empty() || !out.candidates.front().accepted || out.candidates.front().family == CandidateFamily::sensor) return;
   for (const auto& s : screening) {
     if (s.candidate_model->family != CandidateFamily::sensor || !s.candidate_model->has_priors || !s.runs) continue;
@@ -38,7 +38,7 @@ namespace {
 /// follow the whole motion, and could stand for much of it, as could a force whose frequency was looked for: for them every quantity, and
 /// time; so for several effects that are to explain all between them.
 std::vector<int> quantities_that_tell(const CandidateModel& candidate_model, int effects) {
-  const bool remembers = !candidate_model.model.effects.back().effect->spec().states.empty();
+  const bool remembers = has_memory(candidate_model.model.effects.back().effect->spec());
   const bool sensor = candidate_model.family == CandidateFamily::sensor && !candidate_model.has_priors;
   const bool periodic = candidate_model.frequency >= 0;
   if (!remembers && !sensor && !periodic && effects == 1) return candidate_model.quantities;

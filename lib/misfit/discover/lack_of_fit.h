@@ -3,13 +3,13 @@
 #include <optional>
 #include <vector>
 
-#include "misfit/discover/screen.h"
+#include "misfit/discover/unknown_curves.h"
 
 namespace misfit {
 
 /// Sensor effects that would imitate an accepted physical one if the calibration did not forbid it: how far off they would have to be, as
 /// sentences.
-void report_sensor_aliases(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out);
+void report_sensor_imitations(const std::vector<ScreeningResult>& screening, const ScoreTest& score, Discovery& out);
 
 /// What remains beside a candidate counts where it is worth more than this share of its drop: something else that is missing may remain.
 inline constexpr double least_share_of_drop = 0.2;
@@ -24,7 +24,7 @@ struct Added {
 
 /// An unknown curve or surface of a quantity that the effect reads, an error of an output that depends on one (not where the outputs are
 /// those of a calibrated camera), or another form of its memory: significant after it and worth enough. Then the effect is
-/// only an alias of what is missing. `with`: the refitted model that holds it.
+/// only an imitation of what is missing. `with`: the refitted model that holds it.
 [[nodiscard]] std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model,
                                                                 const Added& added, const DiscoverOptions& options);
 

@@ -1,0 +1,109 @@
+#include "misfit/fit/filter/noise_report.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
+#include "misfit/fit/filter/noise_interval.h"
+#include "misfit/math/covariance.h"
+
+namespace misfit {
+namespace {
+
+/// Standard deviations of the logarithms of the noise parameters; 0 where a parameter sits at its bound or is not determined.
+std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
+  const NoiseFit& fit = estimate.noise_fit;
+  Eigen::MatrixXd information = fit.information;
+  const std::vector<bool> known = pin_unknown(fit, information);
+  const Eigen::Index q = information.rows();
+  const Eigen::MatrixXd covariance = estimate.joint_covariance.size() > 0
+                                         ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
+                                         : Eigen::MatrixXd(information.inverse());
+  std::vector<double> out;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    out.push_back(known[i] && !pinned(covariance(i, i)) ? standard_error(covariance, i) : 0.0);
+  return out;
+}
+
+}  // namespace
+
+void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
+  const SystemSpec& spec = estimate.model.system->spec();
+  const NoiseVector vector = pack(estimate.noise, spec, estimate.reference);
+  const std::vector<double> sigmas = noise_sigmas(estimate);
+  const auto as_estimate = [&](std::size_t i, const std::string& unit) {
+    const double value = std::exp(vector.value[i]);
+    return Estimate{value, value * sigmas[i], unit};
+  };
+  const auto intervals = noise_intervals(estimate, {place_in_noise::force, place_in_noise::force_time}, threads);
+  for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
+    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[i]];
+    const std::size_t at = place_of_force(estimate.forced.force_group[i], spec);
+    fit.force[named.name] = as_estimate(at, named.unit);
+    if (at == place_in_noise::force) fit.force[named.name].interval = intervals[0];
+    fit.driven = fit.driven || sigmas[at] > 0.0;
+  }
+  fit.force["correlation_time"] = as_estimate(place_in_noise::force_time, "s");
+  fit.force["correlation_time"].interval = intervals[1];
+  if (!fit.driven) fit.facts["random_force"] = "no random force is determined by these data: the motion counts as not driven";
+  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
+    const std::string& name = spec.outputs[o].name;
+    const std::string& unit = spec.outputs[o].unit;
+    fit.noise[name] = as_estimate(place_in_noise::white(o), unit);
+    if (!(sigmas[place_in_noise::coloured(o)] > 0.0)) {
+      fit.facts["coloured noise of " + name] = "not determined by these data: the measurement noise counts as white";
+      continue;
+    }
+    fit.noise[name + "_coloured"] = as_estimate(place_in_noise::coloured(o), unit);
+    fit.noise[name + "_coloured_frequency"] = as_estimate(place_in_noise::coloured_frequency(o), "Hz");
+    fit.noise[name + "_coloured_damping"] = as_estimate(place_in_noise::coloured_damping(o), "-");
+  }
+}
+
+namespace {
+
+/// A part of the noise model in words, and whether its lower bound means that it is not there, which is said elsewhere.
+struct NoisePart {
+  std::size_t at;  ///< in pack()
+  std::string words, unit;
+  bool absent_at_lower;
+};
+
+/// Those that the fit has found; `fit`: with noise and force.
+std::vector<NoisePart> noise_parts(const FilterEstimate& estimate, const Fit& fit) {
+  const SystemSpec& spec = estimate.model.system->spec();
+  std::vector<NoisePart> out;
+  for (int group = 0; group < estimate.forced.force_groups(); ++group) {
+    const auto port = std::find(estimate.forced.force_group.begin(), estimate.forced.force_group.end(), group);
+    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[port - estimate.forced.force_group.begin()]];
+    out.push_back({place_of_force(group, spec), std::string("the random force on ") + named.name, named.unit, true});
+  }
+  if (fit.driven) out.push_back({place_in_noise::force_time, "the correlation time of the random force", "s", false});
+  for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
+    const std::string of = std::string(" noise of ") + spec.outputs[o].name;
+    out.push_back({place_in_noise::white(o), "the white" + of, spec.outputs[o].unit, false});
+    out.push_back({place_in_noise::coloured(o), "the coloured" + of, spec.outputs[o].unit, true});
+    if (!fit.noise.contains(spec.outputs[o].name + "_coloured")) continue;
+    out.push_back({place_in_noise::coloured_frequency(o), "the frequency of the coloured" + of, "Hz", false});
+    out.push_back({place_in_noise::coloured_damping(o), "the damping of the coloured" + of, "-", false});
+  }
+  return out;
+}
+
+}  // namespace
+
+void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
+  constexpr double nearest = 1e-3;  // of the logarithm
+  const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.reference);
+  for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate, fit)) {
+    if (vector.upper[at] - vector.lower[at] < nearest) continue;  // given by the study
+    const bool lower = vector.value[at] - vector.lower[at] < nearest, upper = vector.upper[at] - vector.value[at] < nearest;
+    if (!upper && (!lower || absent_at_lower)) continue;
+    fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
+                           in_display_unit(std::exp(vector.value[at]), unit) +
+                           ": the likelihood still rises beyond it, so that this is no estimate");
+  }
+}
+
+}  // namespace misfit

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "misfit/data/fit.h"
+#include "misfit/fit/filter/filter_estimate.h"
+
+// What a filter_error fit says of noise and random force: not for use outside.
+namespace misfit {
+
+/// Noise of the outputs and random force with their sigmas; of the first force's strength and the correlation time with 95 % intervals.
+/// Sets whether the motion is driven.
+void add_noise(const FilterEstimate& estimate, int threads, Fit& fit);
+
+/// After add_noise(). The bounds of pack() keep a search away from where nothing is determined: an estimate there is none, and a warning
+/// says so.
+void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit);
+
+}  // namespace misfit
