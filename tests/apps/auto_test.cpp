@@ -16,7 +16,7 @@ TEST(DiscoverAuto, ARolledCameraBelievedStraightIsNotAddedButCalibrated) {
   study.write("track.csv", track.substr(0, track.find('\n', bytes) + 1));
   const Outcome outcome = study.run("discover", {"--auto"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expect_parts(outcome.out, {"It is the camera, not the physics", "free = [\"camera_roll\"", "Model ladder"});
+  expect_parts(outcome.out, {"It is the camera, not the physics", "[\"camera_roll\"", "Model ladder"});
   EXPECT_EQ(study.result("ladder.json").size(), 1U) << outcome.out;
   for (const auto& candidate : study.result("candidates.json")) EXPECT_FALSE(candidate.at("accepted")) << candidate.at("effect");
   EXPECT_FALSE(study.result("discovery.json").at("sweep_asks").empty());

@@ -262,7 +262,7 @@ TEST(AForceOfUnknownForm, BecomesACurveOfItsQuantityBesideWhichWhatItCanTakeOver
   const json rung = json::parse(content(study.path("out/ladder.json"))).at(1);
   EXPECT_GT(rung.at("actual_drop").get<double>(), 100.0);
   EXPECT_GT(rung.at("held_out_gain").get<double>(), 0.0);
-  EXPECT_THAT(rung.at("note").get<std::string>(), testing::HasSubstr("c is held"));
+  EXPECT_THAT(rung.at("note").get<std::string>(), testing::HasSubstr("c is fixed"));
   const std::string folder = "out/rungs/01_unknown_force/";
   const std::string text = content(study.path(folder + "study.toml"));
   expect_parts(text, {"unknown_force = { of = \"w\", port = \"dw/dt\" }", "c.free = false"});

@@ -56,7 +56,7 @@ struct Verdict {
   std::vector<ErrorChange> errors;  ///< the most telling first
   std::vector<std::string> added;   ///< effects of the ladder with their estimates in its last model, a line each
   std::optional<ErrorChange> trim;  ///< before and after, beside the references of the study (remark)
-  std::string next;                 ///< what to do: a command, or a line of the study and a command; empty: nothing
+  std::string next;                 ///< what to do: a command; empty: nothing
 };
 
 /// verdict.json:

@@ -67,9 +67,10 @@ void find_gaps(const std::vector<double>& t, RecordingTime& out) {
   if (out.gaps.empty()) return;
   const auto longest =
       std::max_element(out.gaps.begin(), out.gaps.end(), [](const Gap& a, const Gap& b) { return a.to - a.from < b.to - b.from; });
-  out.remarks.push_back(fmt::format("{} gap{} in time, the longest from {} s to {} s: the model runs on over {}", out.gaps.size(),
-                                    out.gaps.size() == 1 ? "" : "s", format_value(longest->from), format_value(longest->to),
-                                    out.gaps.size() == 1 ? "it" : "them"));
+  out.remarks.push_back(fmt::format(
+      "{} in time, the longest {} s, after t = {} s: the model runs across short gaps, and the recording is split at long ones "
+      "(misfit help data)",
+      counted(out.gaps.size(), "gap", "gaps"), format_value(longest->to - longest->from), format_to_step(longest->from, out.step)));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/data/verdict.h"
+#include "misfit/show/error_changes.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
 
@@ -222,11 +223,8 @@ Blocks rung_blocks(const Ladder& ladder, const Rung& rung) {
     for (auto& row : table.rows) row = {row[0], row[2]};
   }
   out.table(std::move(table));
-  constexpr double negligible_drop = 1.0;  // of the drop
-  if (rung.actual_drop) {
-    out.paragraph(drop_sentence(rung));
-    if (*rung.actual_drop < negligible_drop) out.paragraph("The drop of the added effect is not significant.", Tone::warning);
-  }
+  if (rung.actual_drop) out.paragraph(drop_sentence(rung));
+  if (explains_no_more_than_chance(rung)) out.paragraph("The added effect explains no more than chance does.", Tone::warning);
   if (!rung.note.empty()) out.paragraph(as_sentence(rung.note));
   std::vector<std::string> parameters;
   for (const auto& [name, e] : rung.parameters) parameters.push_back(name + " = " + shown(e));

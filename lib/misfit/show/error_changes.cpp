@@ -83,6 +83,11 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, con
   return out;
 }
 
+bool explains_no_more_than_chance(const Rung& rung) {
+  constexpr double rare = 0.01;
+  return rung.actual_drop && chi_square_tail(*rung.actual_drop, std::max(1, parameters_added(rung))) > rare;
+}
+
 std::string change_in_words(const ErrorChange& e) {
   if (e.within_sigma())
     return fmt::format("the {} changes by less than its sigma, from {} to {}", e.what(), briefly(e.before), briefly(*e.after));

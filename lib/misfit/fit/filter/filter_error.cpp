@@ -253,7 +253,8 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
     if (gaps->extreme < fewest_extreme || static_cast<double>(gaps->extreme) <= clearly_more * by_chance * missing) continue;
     fit.warnings.push_back("experiment '" + signals.name + "': the gaps are not random: in " + std::to_string(gaps->extreme) + " of " +
                            std::to_string(gaps->missing) +
-                           " missing samples the motion is predicted beyond 99 % of what was measured (it left the picture): extreme "
+                           " missing samples the motion is predicted beyond 99 % of what was measured (a sensor at its "
+                           "limit, or a marker out of the picture): extreme "
                            "motion is under-represented");
   }
 }
@@ -404,7 +405,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   test_innovations(estimate, fit);
   if (!estimate.integration.empty()) fit.facts["integration"] = estimate.integration;
   for (const auto& data : estimate.data) {
-    if (!data.inputs.plan.lack.empty()) fit.warnings.push_back(data.signals->name + ": " + data.inputs.plan.lack);
+    if (!data.inputs.plan.lack.empty()) fit.warnings.push_back("experiment '" + data.signals->name + "': " + data.inputs.plan.lack);
   }
   fit.facts["effective_parameters"] = format_value(estimate.edf);
   fit.facts["newton_decrement"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +

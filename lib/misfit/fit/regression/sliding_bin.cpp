@@ -242,8 +242,8 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
     fit.warnings.push_back(name + " of this method is not informative, the motion being driven: " + telescopes +
                            ", and by bins it is a third moment of the motion");
   } else if (pass.test.deterministic()) {
-    fit.warnings.push_back(telescopes + ". The equation explains most of the acceleration (" + fit.facts["whiteness"] +
-                           "): the bins are used");
+    fit.warnings.push_back("the bins are used, since the equation explains most of the acceleration (" + fit.facts["whiteness"] +
+                           "): " + telescopes);
   } else {
     const bool tested = pass.test.tested();
     mark_not_informative(form.model, name,

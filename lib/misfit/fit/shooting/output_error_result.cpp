@@ -376,7 +376,7 @@ void warn_of_other_noise(const Model& model, Fit& fit) {
     const double ratio = rms->second.value / model.known_noise[o].sigma;
     if (ratio > 1.0 / most && ratio < most) continue;
     fit.warnings.push_back("residuals of " + outputs[o].name + " are " + format_value(ratio) +
-                           " times as large as the measurement noise that the study holds, on which the standard errors rest");
+                           " times as large as the measurement noise that the study fixes, on which the standard errors rest");
   }
 }
 

@@ -464,7 +464,7 @@ function intervals(t, inside) {
 
 async function showWhere(view) {
   const where = here.where;
-  if (!where) return nothing(view, 'This model is not diagnosed yet: Run (or misfit diagnose) does it, from the residuals of filter_error.');
+  if (!where) return nothing(view, 'This model is not diagnosed yet. Discover (or misfit diagnose) does it; Run does it only if filter_error is among the methods of the study.');
   const conclusions = where.blocks.find((b) => b.kind === 'list');
   if (conclusions) view.append(blocks([conclusions]));
   const all = [...where.maps, ...where.pairs].sort((a, b) => (a.p ?? 2) - (b.p ?? 2)); // the most significant first; without a p last

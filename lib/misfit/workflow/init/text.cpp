@@ -171,7 +171,9 @@ std::string study_text(const std::string& name, const std::vector<std::string>& 
         "# exclude = 5                # initial samples that do not count\n",
         toml_string(part), toml_string(part + ".csv"));
   }
-  return text + "\n[effects]                    # what the model lacks: `misfit discover` names it, `misfit add` puts it here\n";
+  return text +
+         "\n[effects]                    # what the model lacks: `misfit discover` names it; `misfit add` writes a new study, a rung, and "
+         "leaves this one\n";
 }
 
 }  // namespace misfit
