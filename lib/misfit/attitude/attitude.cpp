@@ -37,7 +37,9 @@ void note_losses(Attitude& a, const AxisSamples& axes, const std::vector<bool>& 
   if (axes.lost > 0) a.notes.push_back(count_of(axes.lost, n, "are lost in the track"));
   if (axes.unexplained > 0) a.notes.push_back(count_of(axes.unexplained, n, "are lost because no angle explains their pixels"));
   const auto gaps = std::count(even.begin(), even.end(), false);
-  if (gaps > 0) a.notes.push_back(std::to_string(gaps) + " steps differ from the usual one and count as gaps");
+  if (gaps > 0)
+    a.notes.push_back(counted(static_cast<std::size_t>(gaps), "step differs from the usual one and counts as a gap",
+                              "steps differ from the usual one and count as gaps"));
   const std::size_t without = std::count_if(a.alpha_T.begin(), a.alpha_T.end(), [](double v) { return std::isnan(v); });
   a.notes.push_back(count_of(without, n, "have no alpha_T, which is computed from seven successive samples"));
 }

@@ -314,8 +314,9 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   rung.study = relative_study(*child);
   rung.added = effect;
   if (study.system) {
-    append_note(rung.note,
-                "no likelihood compares two systems: their channels and states differ; compare k-step errors and the random force");
+    append_note(
+        rung.note,
+        "no likelihood compares two systems: their channels and states differ; compare the errors some samples ahead and the random force");
     for (const auto& left : study.left_out) append_note(rung.note, "effect '" + left + "' is left out: it does not suit " + study.name);
   } else {
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
