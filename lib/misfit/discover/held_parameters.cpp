@@ -27,9 +27,8 @@ FilterModel with_held_ones_free(const FilterEstimate& estimate) {
 
 std::string in_words(const HeldParameter& held, double p_value) {
   return fmt::format(
-      "{0} is fixed at {1}, but these data ask for {2} ({3}drop {4}, family-wise {5}): unless it is known that well, estimate it (misfit "
-      "set "
-      "STUDY parameters.{0}.free=true)",
+      "{0} is fixed at {1}, but these data ask for {2} ({3}drop {4}, family-wise {5}): unless it is known that well, "
+      "estimate it (misfit set STUDY parameters.{0}.free=true)",
       held.name, in_display_unit(held.value, held.unit), in_display_unit(held.wanted, held.unit, held.sigma),
       held.actual_drop ? "" : "predicted ", format_value(held.actual_drop.value_or(held.predicted_drop)), p_equals(p_value));
 }

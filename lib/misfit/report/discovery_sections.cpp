@@ -107,7 +107,7 @@ void show(const Discovery& d, const std::optional<Diagnosis>& diagnosis, const S
 void show_rungs(const Ladder& ladder, Page& page) {
   for (auto rung = ladder.rungs.rbegin(); rung != ladder.rungs.rend(); ++rung) {
     const bool first = rung->added.empty();
-    page.choice("rung", fmt::format("Rung {}: {}", rung->id, first ? rung->system + ", the study's model" : rung->added + " added"),
+    page.choice("rung", fmt::format("Rung {}: {}", rung->id, first ? rung->system + ", the study's own model" : rung->added + " added"),
                 rung == ladder.rungs.rbegin());
     page.show(rung_blocks(ladder, *rung));
     page.unfold();

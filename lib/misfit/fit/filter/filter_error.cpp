@@ -264,7 +264,7 @@ std::string excluded_in_words(const std::vector<double>& times) {
   const auto [first, last] = std::minmax_element(times.begin(), times.end());
   const std::string at = format_value(*first),
                     place = times.size() == 1 ? "at t = " + at + " s is" : "between t = " + at + " s and " + format_value(*last) + " s are";
-  return counted(times.size(), "measurement ", "measurements ") + place +
+  return counted(times.size(), "measurement", "measurements") + " " + place +
          " excluded: the filter's linearisation is not valid there (it changes when a parameter moves by 0.05 sigma)";
 }
 
