@@ -40,7 +40,8 @@ LadderListener ladder_listener(ModelLadder& ladder, const Options& options) {
   } else {
     listener.discovered = [](const Discovery& discovery) { print_stage("discover", line_of(discovery)); };
     listener.added = [](const Rung& rung) {
-      print_stage("add", rung.added + ": " + line_of(rung) + "; as this model has it, the search goes on");
+      print_stage("add", rung.added + ": " + line_of(rung) +
+                             "; these are its estimates in this model, and the test whether the rung stays comes next");
     };
   }
   return listener;

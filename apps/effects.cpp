@@ -69,7 +69,7 @@ nlohmann::ordered_json as_json(const EffectSpec& spec) {
 
 /// "name  text" with further lines below the text.
 std::string entry(const std::string& name, const std::string& text, std::size_t width = 100) {
-  constexpr std::size_t column = 16;
+  constexpr std::size_t column = 18;
   const std::string lines = wrap_text(text, width, std::string(column, ' '));
   return "  " + name + lines.substr(name.size() + 2) + "\n";
 }
@@ -87,8 +87,8 @@ std::string short_text(const EffectSpec& spec) {
                                         {"valid", spec.valid},
                                         {"size", spec.size},
                                         {"source", spec.source},
-                                        {"not", spec.excludes}}) {
-    if (text != "none") out += fmt::format("  {:<13} {}\n", what, text);
+                                        {"does not cover", spec.excludes}}) {
+    if (text != "none") out += fmt::format("  {:<14} {}\n", what, text);
   }
   return out + "\n";
 }
@@ -136,7 +136,7 @@ std::string full_text(const EffectSpec& spec) {
   add({{"formula", spec.formula}, {"symbols", spec.symbols}, {"reads", joined(spec.quantities)}, {"adds to", joined(spec.ports)}});
   add({{"constants", constants}, {"own states", states_of(spec)}});
   out += parameters_table(spec);
-  add({{"valid", spec.valid}, {"size", spec.size}, {"source", spec.source}, {"not", spec.excludes}});
+  add({{"valid", spec.valid}, {"size", spec.size}, {"source", spec.source}, {"does not cover", spec.excludes}});
   return out + study_line(spec);
 }
 

@@ -12,7 +12,8 @@ int export_verb(const Options& options, const Registry& registry) {
   const Exported& exported = report.exported;
   if (!options.quiet) {
     std::cerr << "exporting the estimate by " << exported.fit.method << (exported.rung.empty() ? "" : " of " + exported.rung) << '\n';
-    if (!report.lack.empty()) std::cerr << "note: curves and parameters without a right-hand side: " << report.lack << '\n';
+    if (!report.lack.empty())
+      std::cerr << "note: only curves and parameters are written, not the equations of motion: " << report.lack << '\n';
     if (!report.left_out.empty())
       std::cerr << "note: effects of the model that are not in the file: " << join_words(report.left_out) << '\n';
   }

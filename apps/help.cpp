@@ -104,10 +104,10 @@ std::string data_text() {
   }
   return out + "\n" +
          paragraph(
-             "A matrix is a channel per column: x[0], x[1]. The time of an array is the one called t, time or timestamp beside it, of as "
-             "many numbers. Where sensors have clocks of their own the rows are the times of all of them, so that every measurement stands "
-             "at its own (with columns = { t = ... }: at the nearest of those times); inputs are held or interpolated as the model says; "
-             "notes say what was done and left out.") +
+             "A matrix is a channel per column: x[0], x[1]. The time of an array is the array t, time or timestamp beside it with the "
+             "same number of values. Where sensors have clocks of their own there is a row for every time of any of them, so that every "
+             "measurement stands at its own time (with columns = { t = ... }: at the nearest of those times); inputs are held or "
+             "interpolated as the model says. Notes say what was done and what was left out.") +
          "\n" +
          paragraph(
              "misfit init LOG lists the channels of a log of several clocks; then say which: --topic TOPIC, or --output CHANNEL and "
@@ -115,12 +115,13 @@ std::string data_text() {
          "\n  [[experiment]]\n  data = \"flight.ulg\"\n"
          "  columns = { w = \"vehicle_angular_velocity.xyz[0]\", u = \"actuator_controls_0.control[0]\" }\n\n" +
          paragraph(
-             "A recording is split at gaps of more than 10 sampling intervals and more than 50 rad of the fastest motion: its parts, "
-             "NAME_part_1 and so on, have initial states of their own. Shorter gaps are simulated across.") +
+             "A recording is split at gaps that are longer than 10 sampling intervals and also longer than about 8 periods (50 rad) of the "
+             "fastest motion: its parts, NAME_part_1 and so on, have initial states of their own. The model runs across shorter gaps.") +
          "\n" +
          paragraph(
-             "Units: SI and their kin, as us, ns, min, rpm, degC, \xC2\xB0, kW, mA, bar, km/h. A unit of time that is not known "
-             "stops; any other is said, and its numbers are taken as they are. Excel and Parquet files are not read: save them as CSV.");
+             "Units: SI and their kin, as us, ns, min, rpm, degC, \xC2\xB0, kW, mA, bar, km/h. An unknown unit of time is an "
+             "error; any other unknown unit is reported, and its numbers are taken as they are. Excel and Parquet files are not read: save "
+             "them as CSV.");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ const char* word_of(ColumnUse use) {
 
 std::string survey_text(const RecordingSurvey& survey) {
   std::string out = fmt::format("{}: {}, {} rows\n", survey.source, survey.format, survey.rows);
-  out += fmt::format("  one sample each {:g} s ({:.6g} Hz){}\n\n", survey.step, 1.0 / survey.step,
+  out += fmt::format("  one sample every {:g} s ({:.6g} Hz){}\n\n", survey.step, 1.0 / survey.step,
                      survey.jitter > 1e-3 * survey.step ? fmt::format(", uneven by {:.2g} s", survey.jitter) : "");
   std::vector<std::vector<std::string>> rows = {{"column", "read as", "unit", "from", "to", "steps of", "missing", "because"}};
   for (const auto& c : survey.columns) {

@@ -65,7 +65,7 @@ std::string section(const std::string& title, const std::string& text) { return 
 std::string item(const std::string& name, const std::string& doc) { return fmt::format(".TP\n\\fB{}\\fR\n{}\n", troff(name), troff(doc)); }
 
 constexpr const char* exit_status =
-    "0: done, also when one of several methods declined, in words. 1: the data, the model or the disk do not allow it, or it was "
+    "0: done, also where one of several methods declined and said why. 1: the data, the model or the disk do not allow it, or it was "
     "interrupted. "
     "2: bad command line or study.";
 
@@ -99,7 +99,7 @@ std::string verb_help(const VerbManual& verb) {
 std::string contents_of_help(std::span<const VerbText> verbs) {
   constexpr std::size_t column = 14;
   std::string out =
-      "misfit: find out what your model is missing\n\nmisfit VERB … does it; misfit help VERB says how (so does misfit VERB --help)\n";
+      "misfit: find out what your model is missing\n\nmisfit VERB … runs a verb; misfit help VERB, or misfit VERB --help, describes it\n";
   for (const VerbText& verb : verbs) out += entry(verb.name, verb.doc, column);
   out += "\nmisfit help TOPIC\n";
   for (const auto& [topic, doc] : help_topics()) out += entry(topic, doc, column);

@@ -96,6 +96,11 @@ void add_work(CLI::App& verb, Options& options) {
   add_method(verb, options);
 }
 
+constexpr const char* until_nothing_is_gained =
+    "add the accepted effect, or where none is accepted a curve of unknown form, and search again, until nothing more is gained or 12 "
+    "rounds "
+    "are done; rungs that later ones make needless are taken off";
+
 // The options of each verb.
 void study_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
@@ -117,7 +122,8 @@ void run_options(CLI::App& verb, Options& options) {
   fit_options(verb, options);
   add_round_limit(verb, options);
   add_verbose(verb, options, "print the tables of every stage instead of a line");
-  verb.add_flag("--auto", options.automatic, "also add what discover accepts and search again, until nothing is accepted");
+  verb.get_option("--json")->description("print compare.json (the verdict is in verdict.json of the run folder)");
+  verb.add_flag("--auto", options.automatic, until_nothing_is_gained);
 }
 
 void track_options(CLI::App& verb, Options& options) {
@@ -128,7 +134,7 @@ void track_options(CLI::App& verb, Options& options) {
 
 void discover_options(CLI::App& verb, Options& options) {
   add_study(verb, options);
-  verb.add_flag("--auto", options.automatic, "add the accepted effect and search again, until none is accepted");
+  verb.add_flag("--auto", options.automatic, until_nothing_is_gained);
   add_work(verb, options);
   add_time_limit(verb, options);
   add_round_limit(verb, options);

@@ -11,7 +11,8 @@ struct CoulombFriction {
   static constexpr const char* formula = "F = -friction tanh(|rate|/width) rate/|rate|";
   static constexpr const char* symbols = "friction [port], width of the smoothing [rate], rate of the motion along the port(s) [any]";
   static constexpr const char* valid = "rates that are mostly above the width; below it the bearing creeps instead of sticking";
-  static constexpr const char* size = "beside what else damps the motion: friction/(damping x rate); 20 N m at the swivel holds the parachute 1.4 deg away from its trim";
+  static constexpr const char* size =
+      "beside what else damps the motion: friction/(damping x rate); 20 N m at the swivel holds the parachute 1.4 deg away from its trim";
   static constexpr const char* source =
       "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007): smooth Coulomb friction by tanh";
   static constexpr const char* excludes = "sticking, higher friction at the start of motion (Stribeck), viscous part (viscous_friction)";
@@ -46,8 +47,8 @@ struct CoulombFriction {
     F[port_lateral] = -resistance * across;
   }
 
-  /// [1/s] The largest slope of the force over the rate, which it has at rate 0, times what a force does to the rate: how fast the rate dies
-  /// out there.
+  /// [1/s] The largest slope of the force over the rate, which it has at rate 0, times what a force does to the rate: how fast the rate
+  /// dies out there.
   static double fastest_rate(const Reads<double, double>& in, double response) { return in.c[friction] / in.c[width] * response; }
 
   static std::vector<Example> examples() {

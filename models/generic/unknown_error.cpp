@@ -13,7 +13,7 @@ struct UnknownError {
   static constexpr const char* source =
       "JCGM 200:2012 (VIM), 4.31 calibration curve; JCGM 100:2008 (GUM), 3.2.3: a recognised systematic effect is corrected for";
   static constexpr const char* excludes =
-      "dependence on a second quantity or on the past; what the model has already (its parameter is held)";
+      "dependence on a second quantity or on the past; what the model has already (its parameter is fixed)";
 
   enum Quantity { of };
   static constexpr Role quantities[] = {{.name = "of", .unit = "*"}};

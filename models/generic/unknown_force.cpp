@@ -12,7 +12,7 @@ struct UnknownForce {
   static constexpr const char* size = "dry friction of a bearing, as a curve of its rate: -F for negative and +F for positive rates";
   static constexpr const char* source = "J. Sjoberg et al., Nonlinear black-box modeling in system identification, Automatica 31 (1995)";
   static constexpr const char* excludes =
-      "dependence on a second quantity or on the past; what the model has already (its parameter is held)";
+      "dependence on a second quantity or on the past; what the model has already (its parameter is fixed)";
 
   enum Quantity { of };
   static constexpr Role quantities[] = {{.name = "of", .unit = "*"}};

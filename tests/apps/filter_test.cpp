@@ -48,7 +48,7 @@ TEST_F(OnAShortFlight, TheCameraComesFromItsCalibration) {
 
 TEST_F(OnAShortFlight, DiagnoseSaysWhereFirstAndLeavesItsFiles) {
   ASSERT_EQ(diagnosed.status, 0) << diagnosed.err;
-  EXPECT_TRUE(diagnosed.out.starts_with("Residual diagnostics of filter_error"));
+  EXPECT_TRUE(diagnosed.out.starts_with("Where it fails (residuals of filter_error)"));
   EXPECT_LT(diagnosed.out.find("\n  "), diagnosed.out.find("p (corrected)"));
   const json diagnosis = study->result("diagnosis.json");
   EXPECT_FALSE(diagnosis.at("sentences").empty());

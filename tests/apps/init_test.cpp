@@ -30,7 +30,7 @@ TEST(Init, WritesAStudyWithModelDataAndFigures) {
   const Outcome outcome = run({"init", data.string(), "--out", out.string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("semicolons between cells, decimal commas, 1 comment line"));
-  EXPECT_THAT(outcome.out, HasSubstr("one sample each 0.02 s (50 Hz)"));
+  EXPECT_THAT(outcome.out, HasSubstr("one sample every 0.02 s (50 Hz)"));
   EXPECT_EQ(first_line(out / "swing.csv"), "t[s],u[V],angle[deg]");
   const std::string model = content(out / "model.toml");
   EXPECT_THAT(model, HasSubstr("angle_rate = { unit = \"rad/s\", rate_of = \"angle\""));

@@ -52,7 +52,7 @@ constexpr double soon = 1.0, at_the_end = 5.0;
 
 void expect_stopped(const Stopped& stopped) {
   EXPECT_EQ(stopped.outcome.status, 1) << stopped.outcome.out << stopped.outcome.err;
-  EXPECT_THAT(stopped.outcome.err, HasSubstr("misfit: interrupted; finished work is in the run folder"));
+  EXPECT_THAT(stopped.outcome.err, HasSubstr("misfit: interrupted; finished work is kept in the run folder"));
   EXPECT_LT(stopped.answered, soon);
   EXPECT_LT(stopped.ended, at_the_end);
 }

@@ -92,7 +92,7 @@ TEST(Resampling, OfAWrongNameIsRefusedBeforeAnythingIsComputed) {
   };
   refused({"study.toml:", "'cosin'", "did you mean 'cosine'"});
   study.change("\"cosin\"", "\"frequency\"");
-  refused({"study.toml:", "'frequency' is held in this study"});
+  refused({"study.toml:", "'frequency' is fixed in this study"});
   study.change("\"frequency\"", "\"C_m[2]\"");
   refused({"study.toml:", "'C_m[2]' is a coefficient of a curve"});
   study.methods("[\"equation_error\"]");

@@ -117,7 +117,7 @@ TEST(WrongPerturbations, AreNamedWithTheirPlaceAndTheNearestName) {
   expect_refused(flight, "{ R = \"-0.1 m\" }", {"uncertainty.perturb.R", "above 0"});
   expect_refused(flight, "{ R = 0 }", {"uncertainty.perturb.R", "above 0"});
   expect_refused(flight, "{ R = true }", {"uncertainty.perturb.R", "a number is expected"});
-  expect_refused(flight, "{ C_m = 0.1 }", {"'C_m' is estimated", "only what is held"});
+  expect_refused(flight, "{ C_m = 0.1 }", {"'C_m' is estimated", "only what is fixed"});
   expect_refused(flight, "{ R1 = \"1 in\" }", {"through the calibration alone", "recalibrate"});
   expect_refused(flight, "{}", {"nothing is perturbed"});
   expect_refused(flight, "{ R = \"1 in\" }", {"uncertainty.distribution", "'3 sgma'", "'3 sigma'"}, "distribution = \"3 sgma\"");
@@ -131,7 +131,7 @@ TEST(WrongPerturbations, OnAStudyOfAnglesTheCameraMeansNothing) {
   study.change("perturb = .*", "perturb = { K = \"1 px/m\" }");
   const Outcome outcome = study.uncertainty({});
   EXPECT_EQ(outcome.status, 2);
-  expect_parts(outcome.err, {"nothing that is held in this study is called 'K'", "m_a"});
+  expect_parts(outcome.err, {"nothing that is fixed in this study is called 'K'", "m_a"});
   study.change("perturb = .*", "perturb = { m_a = \"0.1 kg\" }\ncamera = \"calibration\"");
   expect_parts(study.uncertainty({}).err, {"needs a calibrated camera"});
 }

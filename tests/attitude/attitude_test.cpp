@@ -157,7 +157,7 @@ TEST(Attitude, LostSamplesAreGapsOfSevenAndNeverBridged) {
     EXPECT_EQ(std::isnan(a.alpha_T[i]), away <= 3 || i < 3 || i > 56) << i;
     EXPECT_EQ(std::isnan(a.sigma_alpha_T[i]), std::isnan(a.alpha_T[i])) << i;
   }
-  EXPECT_THAT(a.notes, Contains(HasSubstr("1 of 60 samples are lost in the track")));
+  EXPECT_THAT(a.notes, Contains(HasSubstr("1 of 60 samples is lost in the track")));
 }
 
 TEST(Attitude, RowThatIsMissingAltogetherIsAGapToo) {
@@ -192,7 +192,7 @@ TEST(Attitude, PixelsThatNoAngleExplainsAreLostAndSaid) {
   track.P_z[20] = 5000.0;
   const Attitude a = attitude(track, camera(), rig());
   EXPECT_TRUE(std::isnan(a.theta[20]));
-  EXPECT_THAT(a.notes, Contains(HasSubstr("1 of 40 samples are lost because no angle explains their pixels")));
+  EXPECT_THAT(a.notes, Contains(HasSubstr("1 of 40 samples is lost because no angle explains its pixels")));
   for (double& p : track.P_z) p = 5000.0;
   EXPECT_THROW((void)attitude(track, camera(), rig()), RunError);
 }

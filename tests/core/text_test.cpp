@@ -77,6 +77,12 @@ TEST(WrapText, LeavesALongWordWhole) { EXPECT_EQ(wrap_text("a verylongword b", 6
 
 TEST(WrapText, KeepsParagraphs) { EXPECT_EQ(wrap_text("one\n\ntwo three", 5), "one\n\ntwo\nthree"); }
 
+TEST(Counted, AgreesInNumber) {
+  EXPECT_EQ(counted(0, "gap", "gaps"), "0 gaps");
+  EXPECT_EQ(counted(1, "gap", "gaps"), "1 gap");
+  EXPECT_EQ(counted(2, "gap", "gaps"), "2 gaps");
+}
+
 TEST(JoinWords, CommasAndAnAnd) {
   EXPECT_EQ(join_words({}), "");
   EXPECT_EQ(join_words({"a"}), "a");

@@ -153,7 +153,7 @@ Discovery example_discovery() {
   d.tried = {"14 effects"};
   d.force = {{"moment", {31.0, 0.8, "N m"}}};
   d.sweep_asks = {"camera_roll"};
-  d.fixed_parameters = {{"k is held at 39"}};
+  d.fixed_parameters = {{"k is fixed at 39"}};
   d.unexplained_port = "dw/dt";
   d.unexplained_quantity = "w";
   d.unexplained_error = true;

@@ -46,7 +46,7 @@ TEST_F(TrackFile, LostSamplesKeepTheirRow) {
 TEST_F(TrackFile, RowsWithoutTimeAreDroppedAndSaid) {
   const Track track = read("t[s],P_y[px],P_z[px]\n0,1,2\n,3,4\n1,5,6\n");
   EXPECT_EQ(track.P_y, (std::vector<double>{1.0, 5.0}));
-  EXPECT_EQ(track.notes, (std::vector<std::string>{"1 rows without a time were dropped"}));
+  EXPECT_EQ(track.notes, (std::vector<std::string>{"1 row without a time was dropped"}));
 }
 
 TEST_F(TrackFile, PositionsBeyondAnyImageAreLostAndSaid) {

@@ -356,7 +356,7 @@ TEST(Accept, NothingIsChosenPastAnUnknownFormWorthTwiceAsMuch) {
   EXPECT_TRUE(accepted_beside(1.9).accepted);
   const Candidate passed_over = accepted_beside(2.1);
   EXPECT_FALSE(passed_over.accepted);
-  EXPECT_EQ(passed_over.why, "explains less than half of what an unknown curve force(x) does, and no known effect describes that");
+  EXPECT_EQ(passed_over.why, "explains less than half of what an unknown curve force(x) does; no known effect describes the larger one");
 }
 
 /// The drive is limited in its rate, which no known effect describes, and there is a little friction: that is right, but says nothing of
@@ -383,7 +383,7 @@ TEST(Accept, NothingIsChosenPastALargerAliasThatNoSecondEffectExplains) {
   const auto left = world.accept(ranked);
   for (const auto& e : ranked) EXPECT_FALSE(e.candidate.accepted) << e.candidate.effect << ": " << e.candidate.why;
   EXPECT_TRUE(left.has_value());
-  EXPECT_THAT(of(ranked, "coulomb_friction").why, testing::HasSubstr("and that leaves a lack of fit which no second effect removes"));
+  EXPECT_THAT(of(ranked, "coulomb_friction").why, testing::HasSubstr("the larger one leaves a lack of fit that no second effect removes"));
 }
 
 /// The frequency of a force rises slowly: one at rest finds a part of it, of which the held-out rest knows nothing.

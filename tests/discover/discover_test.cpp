@@ -184,7 +184,7 @@ TEST(Verdict, WhatTheSweepAsksForIsNotAcceptedButCalibrated) {
   Discovery d = accepting("camera_roll", CandidateFamily::sensor);
   add_camera_remarks(&calibration, 0.01, d);
   EXPECT_FALSE(d.candidates[0].accepted);
-  EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("recalibrate with them enabled"));
+  EXPECT_THAT(d.candidates[0].why, testing::HasSubstr("add camera_roll to [camera] free, then misfit run"));
   EXPECT_EQ(d.outcome, SearchOutcome::camera_incomplete);
   EXPECT_THAT(d.verdict, testing::StartsWith("The camera model is incomplete"));
   EXPECT_THAT(d.sweep_asks, testing::ElementsAre("camera_roll"));

@@ -22,7 +22,7 @@ std::vector<std::string> said(const std::map<std::string, double>& sigmas) {
 }
 
 TEST(HeldParameters, OneThatTheDataWantOtherwiseIsSaid) {
-  EXPECT_THAT(said({}), testing::Contains(testing::HasSubstr("free it, unless it is known that well")));
+  EXPECT_THAT(said({}), testing::Contains(testing::HasSubstr("unless it is known that well, estimate it (misfit set STUDY parameters.")));
 }
 
 /// Its score knows nothing of that: freed it stays where it is.

@@ -333,8 +333,8 @@ TEST(DiscoveryReport, ARungsFindingsStandUnderItsName) {
   input.rung = RungInput{2, "strut_wake", std::nullopt, input.discovery};
   input.rung->discovery->verdict = "nothing more";
   const std::string page = read_file(write_report(folder.path(), input));
-  expect_parts(page,
-               {"Candidate effects (rung 0, the study&#39;s model)", "Candidate effects (rung 2, strut_wake added)", "Nothing more."});
+  expect_parts(page, {"What could be missing: the study&#39;s own model (rung 0)", "What could be missing: rung 2, strut_wake added",
+                      "Nothing more."});
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures/rung_02_candidates.svg"));
 }
 
@@ -345,7 +345,7 @@ TEST(DiscoveryReport, AnEmptyDiagnosisStillGivesAPage) {
   input.diagnosis.emplace();
   input.discovery.emplace();
   const std::string page = read_file(write_report(folder.path(), input));
-  expect_parts(page, {"Residual diagnostics", "Candidate effects"});
+  expect_parts(page, {"Where it fails (residuals of ", "What could be missing"});
 }
 
 }  // namespace

@@ -204,7 +204,7 @@ TEST(Report, EveryFigureIsOnThePageAndOnDisk) {
 TEST(Report, AnEmptyStudyStillGivesAPage) {
   const TemporaryFolder folder;
   const std::string page = read_file(write_report(folder.path(), {}));
-  expect_parts(page, {"<h1>Report</h1>", "No sample was dropped or rejected", "Provenance"});
+  expect_parts(page, {"<h1>Report</h1>", "No notes on the data", "Provenance"});
   EXPECT_EQ(page.find("<figure>"), std::string::npos);
 }
 
@@ -217,7 +217,7 @@ TEST(Report, WhatWasDoneToTheRowsOfARecordingIsADataNoteOnce) {
   const std::string note = "<li>part_1: 3 rows without time dropped; channel y: 2 isolated outliers rejected</li>";
   EXPECT_NE(page.find(note), std::string::npos);
   EXPECT_EQ(page.find(note), page.rfind(note)) << "two methods, one recording";
-  EXPECT_EQ(page.find("No sample was dropped"), std::string::npos);
+  EXPECT_EQ(page.find("No notes on the data"), std::string::npos);
 }
 
 TEST(Report, CommandsAndNamesOfFilesStandLetterByLetter) {

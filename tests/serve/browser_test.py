@@ -359,7 +359,7 @@ def find_and_add():
     assert not option.is_enabled() and "already in the model" in option.get_attribute("textContent"), "it cannot be added again"
     typed_text_is_kept(page)
     page.view("curves")
-    page.wait(lambda: "model 0, " in page.text("#view"), "the curves as they were before")
+    page.wait(lambda: "own model (rung 0)" in page.text("#view"), "the curves as they were before")
     page.view("commands")
     page.wait(lambda: f"misfit add {STUDY} {first}" in page.text("#view pre"), "session.sh")
     verdict = page.text("#verdict")
@@ -434,7 +434,7 @@ def marks_do_not_go_with_another_recording(page):
 
 
 def settings():
-    """A parameter is held and another part held out; both are lines of the study and commands of session.sh."""
+    """A parameter is fixed and another part held out; both are lines of the study and commands of session.sh."""
     text = read(STUDY)
     with open(STUDY, "w", encoding="utf-8") as file:
         file.write(text.replace("[effects]", '[[experiment]]\nname = "again"\ndata = "d.csv"\n[effects]'))
@@ -450,7 +450,7 @@ def settings():
     assert "k.free = false" in read(STUDY)
     page.wait(lambda: "Run makes them again" in page.text("#alerts"), "the results are outdated")
     page.wait(lambda: page.one("[data-parameter=k]"), "the parameter")
-    page.wait(lambda: page.text("[data-parameter=k]") == "Estimate", "it is held")
+    page.wait(lambda: page.text("[data-parameter=k]") == "Estimate", "it is fixed")
     assert not page.one("#holdout").is_displayed()
     over = page.one("#motion .u-over")
     page.js("arguments[0].scrollIntoView({block: 'center'})", over)

@@ -29,6 +29,15 @@ TEST(LineOfAFit, SaysWhatAWarningOfAnExperimentIsAbout) {
   EXPECT_THAT(line_of(fit), testing::Not(testing::HasSubstr("experiment")));
 }
 
+TEST(LineOfAFit, NamesEveryCurveThatIsNotInformativeAndWhy) {
+  Fit fit = filter();
+  fit.curves.resize(2);
+  fit.curves[1].name = "C_m_alpha_rate";
+  fit.curves[1].informative = false;
+  fit.curves[1].why = "driven motion: the sum of acceleration times rate telescopes";
+  EXPECT_THAT(line_of(fit), testing::EndsWith("; C_m_alpha_rate not informative: driven motion"));
+}
+
 TEST(LineOfAFit, SaysWhatItLeavesOut) {
   Fit fit = filter();
   for (const char* name : {"a", "b", "c", "d", "e"}) fit.parameters[name] = {1.0, 0.1, "V"};
@@ -50,13 +59,18 @@ TEST(LineOfAFit, ThatDeclinedGivesTheReasonWithoutItsConsequence) {
   EXPECT_EQ(line_of(fit), "declined: a force drives it");
 }
 
-TEST(LineOfADiscovery, NamesTheAcceptedEffectElseTheNearest) {
+TEST(LineOfADiscovery, NamesTheAcceptedEffectElseThatOfTheSmallestP) {
   Discovery d;
   Candidate c;
   c.effect = "lag";
   c.p_value = 0.7;
   d.candidates = {c, c};
-  EXPECT_EQ(line_of(d), "2 effects tested, none accepted; nearest: lag (p = 0.7)");
+  EXPECT_EQ(line_of(d), "2 effects tested, none accepted; smallest p: lag (p = 0.7)");
+  d.candidates.back().described = true;
+  EXPECT_THAT(line_of(d), testing::StartsWith("1 effect tested, none accepted"));
+  d.candidates.front().p_value = 1e-9;
+  d.candidates.front().why = "its strength is not determined: drag = 1 ± 3";
+  EXPECT_THAT(line_of(d), testing::EndsWith("smallest p: lag (p = 1e-09), rejected: its strength is not determined"));
   d.unexplained_port = "dw/dt";
   d.unexplained_quantity = "w";
   EXPECT_THAT(line_of(d), testing::HasSubstr("a force on dw/dt that depends on w is of unknown form"));

@@ -100,6 +100,10 @@ TEST(Verdict, NothingMissingNamesTheRandomForceThatDrivesTheMotion) {
   v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::nothing_missing);
   EXPECT_THAT(v.sentence, Not(HasSubstr("random force")));
+  c.discovery->candidates.pop_back();
+  EXPECT_EQ(c.verdict().sentence, "No effect is found missing: the one that was tested is not needed.");
+  c.discovery->candidates.front().described = true;
+  EXPECT_EQ(c.verdict().sentence, "No effect is found missing, but none of the library was tested.");
 }
 
 TEST(Verdict, WithoutASearchTheResidualsSpeakAndDiscoverIsNext) {
@@ -126,6 +130,8 @@ TEST(Verdict, WithoutASearchTheResidualsSpeakAndDiscoverIsNext) {
   EXPECT_THAT(c.verdict().sentence, HasSubstr("nothing stands out in the residuals of output_error"));
   c.fits.front().coloured = true;
   EXPECT_EQ(c.verdict().kind, VerdictKind::not_searched);
+  EXPECT_THAT(c.verdict().sentence, AllOf(HasSubstr("or the measurement noise is autocorrelated: the residuals of output_error"),
+                                          EndsWith("whether an effect is missing has not been looked for.")));
 }
 
 TEST(Verdict, AnAcceptedEffectIsNamedWithItsValuesTheForceThatItLeavesAndTheCommandThatAddsIt) {
@@ -152,12 +158,12 @@ TEST(Verdict, EffectsThatTheDataCannotDistinguishAreAllNamed) {
 
 TEST(Verdict, TheHorizonOfAnErrorHasItsTimeAndTheLastModelItsOtherNumbers) {
   Case c;
-  EXPECT_EQ(c.verdict().errors.front().what(), "RMS error of w, one sample ahead") << "of a filter";
+  EXPECT_EQ(c.verdict().errors.front().what(), "RMS error of w one sample ahead") << "of a filter";
   c.add_effect();
   c.ladder->rungs.back().parameters = {{"friction", {5.0, 0.5, "V/s"}}};
   c.ladder->rungs.back().estimates = {{"friction", {5.0, 0.5, "V/s"}}, {"gain", {2.0, 0.1, "1/s"}}};
   const Verdict v = c.verdict();
-  EXPECT_EQ(v.errors.front().what(), "RMS error of w, 32 samples (0.64 s) ahead");
+  EXPECT_EQ(v.errors.front().what(), "RMS error of w 32 samples (0.64 s) ahead");
   EXPECT_THAT(v.added, testing::ElementsAre(testing::StartsWith("coulomb_friction: friction = 5.0"),
                                             "other parameters of the last model: gain = 2.00 ± 0.10 1/s"));
 }
@@ -179,7 +185,7 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
   Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::effect_added);
   EXPECT_EQ(v.sentence,
-            "coulomb_friction was missing: with it the RMS error of w, 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %); nothing "
+            "coulomb_friction was missing: with it the RMS error of w 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %); nothing "
             "more is found "
             "missing.");
   EXPECT_THAT(v.where, EndsWith("(p = 1e-20); with coulomb_friction: p = 0.7."));
@@ -220,7 +226,7 @@ TEST(Verdict, AnEstimateThatLaterRungsHaveMovedIsGivenOfBothModels) {
   second.estimates = {{"friction", {21.8, 1.3, "V/s"}}, {"clock_offset", {0.011, 0.002, "s"}}};
   c.ladder->rungs.push_back(second);
   EXPECT_THAT(c.verdict().added,
-              testing::ElementsAre("coulomb_friction: friction = 21.8 ± 1.3 V/s in the last model (friction = 20.6 ± 1.2 V/s in model 1)",
+              testing::ElementsAre("coulomb_friction: friction = 21.8 ± 1.3 V/s in the last model (friction = 20.6 ± 1.2 V/s in rung 1)",
                                    "time_offset: clock_offset = 0.0110 ± 0.0020 s"));
 }
 
@@ -284,8 +290,8 @@ TEST(Verdict, AnErrorThatClearlyRisesIsSaidBesideOneThatFalls) {
     rung.k_step["x"] = {0.1, 0.1, 0.1, 0.1, 0.1, last};
   }
   EXPECT_THAT(c.verdict().sentence,
-              AllOf(HasSubstr("the RMS error of w, 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %), but the RMS "
-                              "error of x, 32 samples (0.64 s) ahead rises from 2 m to 7 m (+250 %)")));
+              AllOf(HasSubstr("the RMS error of w 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %), but the RMS "
+                              "error of x 32 samples (0.64 s) ahead rises from 2 m to 7 m (+250 %)")));
   c.ladder->rungs[1].k_step = c.ladder->rungs[0].k_step;
   c.ladder->rungs[1].force.clear();
   EXPECT_THAT(c.verdict().sentence, HasSubstr(" stays at "));
@@ -300,9 +306,10 @@ TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
   c.discovery = searched({lag}, SearchOutcome::best_rejected, "No effect accepted; " + best_rejected(lag) + ".");
   const Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::not_decided);
-  EXPECT_THAT(v.sentence,
-              AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("(-85 %); whether more is missing is not decided"),
-                    EndsWith("; best candidate lag (drop 50, family-wise p = 1e-09), rejected: its size is odd.")));
+  EXPECT_THAT(
+      v.sentence,
+      AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("(-85 %); whether more is missing is not decided"),
+            HasSubstr("; best candidate lag (drop 50, family-wise p = 1e-09), rejected: its size is odd; lag can be added by hand")));
 }
 
 TEST(Verdict, WhatIsStillMissingComesBeforeWhatWasAdded) {
@@ -327,12 +334,17 @@ TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) 
   c.add_effect();
   c.ladder->rungs[1].force = {{"dw/dt", {19.4, 0.9, "V/s"}}};
   c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9}}};
-  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w, 32 samples (0.64 s) ahead falls from 8 V to 7.9 V (-1.2 %)"));
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w 32 samples (0.64 s) ahead falls from 8 V to 7.9 V (-1.2 %)"));
+  c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9999}}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w 32 samples (0.64 s) ahead stays at 8 V"));
+  c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9}}};
   c.fail_at_rest();
   c.rung_diagnosis = c.diagnosis;
   c.rung_diagnosis->maps.front().p_corrected = 0.7;
   const Verdict v = c.verdict();
-  EXPECT_THAT(v.sentence, HasSubstr("was missing: with it the map of dw/dt over w goes from p = 1e-20 to p = 0.7; whether"));
+  EXPECT_THAT(
+      v.sentence,
+      HasSubstr("was missing: with it the missing dw/dt against w changes in significance: p = 1e-20 before, p = 0.7 now; whether"));
   ASSERT_EQ(v.errors.size(), 2U);
   EXPECT_EQ(shown(v.errors[1]), "20.0 ± 1.0 V/s to 19.40 ± 0.90 V/s (within its sigma)");
   c.ladder->rungs[1].force = {{"dw/dt", {18.4, 0.9, "V/s"}}};
@@ -346,9 +358,9 @@ TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) 
 TEST(Verdict, SaysWhichHeldParameterExplainsAsMuch) {
   Case c;
   c.discovery = searched({}, SearchOutcome::none_missing, "nothing");
-  c.discovery->fixed_parameters = {{"k is held at 39 1/s^2, and these data want 40 1/s^2: free it", "m is held"}};
+  c.discovery->fixed_parameters = {{"k is fixed at 39 1/s^2, but these data ask for 40 1/s^2: estimate it", "m is fixed"}};
   EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("No effect is found missing"),
-                                          testing::EndsWith(" But k is held at 39 1/s^2, and these data want 40 1/s^2: free it.")));
+                                          testing::EndsWith(" k is fixed at 39 1/s^2, but these data ask for 40 1/s^2: estimate it.")));
 }
 
 TEST(Verdict, ACalibrationThatItsSweepContradictsComesBeforeEveryEffect) {
@@ -359,7 +371,9 @@ TEST(Verdict, ACalibrationThatItsSweepContradictsComesBeforeEveryEffect) {
   const Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::calibration);
   EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("It is the camera, not the physics"), HasSubstr("4.58 px RMS")));
-  EXPECT_EQ(v.next, "set [camera] free = [\"camera_roll\", \"image_centre\"] in the study, then misfit run configs/motor");
+  EXPECT_THAT(v.sentence,
+              EndsWith("; add them to [camera] free of the study, free = [\"camera_roll\", \"image_centre\"], and run it again."));
+  EXPECT_EQ(v.next, "misfit run configs/motor");
   c.discovery->outcome = SearchOutcome::camera_against_flight;
   EXPECT_THAT(c.verdict().sentence, testing::StartsWith("The camera comes first"));
 }
@@ -371,8 +385,17 @@ TEST(Verdict, ASearchThatWasCutOffOrRefusesItsBestDecidesNothing) {
                                        std::pair(SearchOutcome::best_rejected, "No effect accepted; best candidate lag.")}) {
     c.discovery = searched({candidate("lag", 1e-9, false)}, outcome, words);
     EXPECT_EQ(c.verdict().kind, VerdictKind::not_decided) << words;
-    EXPECT_EQ(c.verdict().sentence, words);
+    EXPECT_THAT(c.verdict().sentence, testing::StartsWith(words));
   }
+  EXPECT_THAT(c.verdict().sentence, EndsWith(" lag can be added by hand and judged by its held-out gain."));
+  EXPECT_EQ(c.verdict().next, "misfit add configs/motor lag");
+  c.discovery->outcome = SearchOutcome::not_decided;
+  EXPECT_EQ(c.verdict().next, "misfit discover configs/motor --time-limit 3600 --round-limit 36000") << "a refit has a limit of its own";
+  c.discovery->outcome = SearchOutcome::not_finished;
+  EXPECT_EQ(c.verdict().next, "misfit discover configs/motor --round-limit 3600");
+  c.discovery = searched({}, SearchOutcome::none_suits, "No effect of the library suits this system: none was tested.");
+  EXPECT_THAT(c.verdict().sentence, EndsWith("none was tested. Write one as a formula under [effects]."));
+  EXPECT_EQ(c.verdict().next, "misfit help study");
 }
 
 TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
@@ -382,7 +405,8 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
   c.discovery->unexplained_quantity = "w";
   EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
   EXPECT_THAT(c.verdict().sentence, HasSubstr("depends on w: a force on dw/dt that no effect of the library explains"));
-  EXPECT_THAT(c.verdict().next, testing::StartsWith("look where it fails"));
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("; look where it fails, then write the effect as one line of the study"));
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
   c.discovery->unexplained_effects = {{"unknown_force", {{"of", "w"}, {"port", "dw/dt"}}}};
   EXPECT_THAT(c.verdict().next,
               AllOf(testing::StartsWith("misfit add "), HasSubstr(" unknown_force"), testing::EndsWith("--at 'of=w' --at 'port=dw/dt'")));
@@ -407,6 +431,7 @@ TEST(Verdict, WithoutAUsableFitItSaysWhy) {
   c.fits.front().message = "too few samples";
   EXPECT_EQ(c.verdict().kind, VerdictKind::no_result);
   EXPECT_THAT(c.verdict().sentence, HasSubstr("filter_error declined: too few samples"));
+  EXPECT_EQ(c.verdict().next, "misfit fit configs/motor");
 }
 
 TEST(Verdict, TheTrimStandsWithItsIntervalBesideTheReferences) {

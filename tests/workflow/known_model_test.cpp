@@ -54,7 +54,8 @@ TEST(AKnownModel, LacksAForceInProportionWhereItsStiffnessIsTooLow) {
   EXPECT_LT(first.parameters.at("half_width").value, 0.02) << "a dead zone of no width";
   ASSERT_TRUE(found.fixed_parameters) << "what a user would free";
   ASSERT_EQ(found.fixed_parameters->size(), 1U);
-  EXPECT_THAT(found.fixed_parameters->front(), AllOf(HasSubstr("k is held at 39 1/s^2, and these data want 39.99"), HasSubstr("(drop 39")));
+  EXPECT_THAT(found.fixed_parameters->front(),
+              AllOf(HasSubstr("k is fixed at 39 1/s^2, but these data ask for 39.99"), HasSubstr("(drop 39")));
 }
 
 /// A random force that is hardly there has no correlation time: its logarithm is held, and the sigma of what is held is none.

@@ -118,7 +118,7 @@ x_px = { unit = "px", formula = "arm*sin(theta)", noise = 0.3 }
     static_cast<void>(Rig(session, assemble(session.model.request, session.registry)));
     FAIL() << "P_y acts on nothing";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("nothing that is held in this study is called 'P_y'"));
+    EXPECT_THAT(error.what(), HasSubstr("nothing that is fixed in this study is called 'P_y'"));
   }
 }
 

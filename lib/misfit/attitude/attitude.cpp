@@ -27,19 +27,24 @@ void check_geometry(const RigGeometry& g) {
                    " m");
 }
 
-std::string count_of(std::size_t count, std::size_t of, const std::string& what) {
-  return std::to_string(count) + " of " + std::to_string(of) + " samples " + what;
+std::string count_of(std::size_t count, std::size_t of, const std::string& is, const std::string& are) {
+  return std::to_string(count) + " of " + std::to_string(of) + " samples " + (count == 1 ? is : are);
 }
 
 // What was lost on the way from pixels to angles.
 void note_losses(Attitude& a, const AxisSamples& axes, const std::vector<bool>& even) {
   const std::size_t n = a.t.size();
-  if (axes.lost > 0) a.notes.push_back(count_of(axes.lost, n, "are lost in the track"));
-  if (axes.unexplained > 0) a.notes.push_back(count_of(axes.unexplained, n, "are lost because no angle explains their pixels"));
+  if (axes.lost > 0) a.notes.push_back(count_of(axes.lost, n, "is lost in the track", "are lost in the track"));
+  if (axes.unexplained > 0)
+    a.notes.push_back(
+        count_of(axes.unexplained, n, "is lost because no angle explains its pixels", "are lost because no angle explains their pixels"));
   const auto gaps = std::count(even.begin(), even.end(), false);
-  if (gaps > 0) a.notes.push_back(std::to_string(gaps) + " steps differ from the usual one and count as gaps");
+  if (gaps > 0)
+    a.notes.push_back(counted(static_cast<std::size_t>(gaps), "step differs from the usual one and counts as a gap",
+                              "steps differ from the usual one and count as gaps"));
   const std::size_t without = std::count_if(a.alpha_T.begin(), a.alpha_T.end(), [](double v) { return std::isnan(v); });
-  a.notes.push_back(count_of(without, n, "have no alpha_T, which is computed from seven successive samples"));
+  a.notes.push_back(count_of(without, n, "has no alpha_T, which is computed from seven successive samples",
+                             "have no alpha_T, which is computed from seven successive samples"));
 }
 
 // Measurement noise per sample: the track's where it knows it, else the estimate.
@@ -49,7 +54,7 @@ std::vector<double> noise_per_sample(const Track& track, const std::vector<bool>
   if (std::all_of(sigma.begin(), sigma.end(), [](double s) { return std::isfinite(s); })) return sigma;
   const std::size_t unknown = std::count_if(sigma.begin(), sigma.end(), [](double s) { return !std::isfinite(s); });
   const auto estimate = pixel_noise(track, even);
-  notes.push_back(count_of(unknown, sigma.size(), "have no sigma in the track: ") +
+  notes.push_back(count_of(unknown, sigma.size(), "has no sigma in the track: ", "have no sigma in the track: ") +
                   (estimate ? "measurement noise there is " + format_value(*estimate) + " px, estimated from sixth differences"
                             : "too few samples in a row to estimate it, so sigmas are missing there"));
   for (double& s : sigma) {
@@ -96,7 +101,8 @@ Attitude attitude(const Track& track, const Calibration& calibration, const RigG
   const std::vector<bool> even = even_steps(track.t, options.even);
   const AxisSamples axes = read_axes(track, calibration, geometry, options.sigmas);
   if (axes.lost + axes.unexplained == track.t.size()) {
-    throw RunError("no sample of the track can be read as an angle: " + count_of(axes.lost, track.t.size(), "are lost, of the other ") +
+    throw RunError("no sample of the track can be read as an angle: " +
+                   count_of(axes.lost, track.t.size(), "is lost, of the other ", "are lost, of the other ") +
                    std::to_string(axes.unexplained) + " no angle explains the pixels (camera and geometry do not belong to this track?)");
   }
   Attitude result = from_axis_samples(track, axes, even, lag);

@@ -182,7 +182,7 @@ void test_disabled_parameters(const Sweep& sweep, const RigGeometry& geometry, c
     if (!test.selected || enabled(test.name)) continue;
     test.selected = false;
     calibration.notes.push_back(test.name + " is significant in the sweep (drop " + format_value(test.drop) +
-                                "), but not enabled by [camera] offer");
+                                "), but this study does not estimate it: add it to [camera] free and calibrate again");
     calibration.tests.push_back(std::move(test));
   }
 }

@@ -167,8 +167,12 @@ std::string worst_of(const MotionGroup& group) {
   std::string name = "its " + worst->name;
   if (worst->name == "lag") name = fmt::format("at a lag of {:.2g} s it", worst->at);
   if (worst->name == "power") name = fmt::format("the power at {:.2g} Hz", worst->at);
+  const bool level = is_level(group, *worst);
+  const auto displayed = [&](double value) { return level ? display_level(value, group.unit) : display_value(value, group.unit); };
+  const double step = 0.01 * (displayed(worst->high) - displayed(worst->low));
   const auto shown = [&](double value) {
-    return is_level(group, *worst) ? in_level_unit(value, group.unit) : in_display_unit(value, group.unit);
+    const std::string number = step > 0.0 ? format_to_step(displayed(value), step) : format_value(displayed(value));
+    return level ? with_level_unit(number, group.unit) : with_display_unit(number, group.unit);
   };
   return name + " is " + shown(worst->measured) + ", simulated between " + shown(worst->low) + " and " + shown(worst->high);
 }

@@ -32,6 +32,9 @@ namespace misfit {
 /// ASCII letters only: "KW" → "kw".
 [[nodiscard]] std::string lower_case(std::string_view text);
 
+/// "1 gap", "3 gaps".
+[[nodiscard]] std::string counted(std::size_t n, const std::string& one, const std::string& many);
+
 /// "a", "a and b", "a, b and c".
 [[nodiscard]] std::string join_words(const std::vector<std::string>& words);
 

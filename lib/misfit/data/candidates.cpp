@@ -96,7 +96,7 @@ std::string parameters_in_words(const Candidate& candidate) {
   for (const auto& [name, e] : candidate.parameters) {
     const bool held = std::any_of(candidate.fixed.begin(), candidate.fixed.end(),
                                   [&, own = name](const std::string& fixed) { return own == fixed || own.ends_with("." + fixed); });
-    out.push_back(name + " = " + in_display_unit(e.value, e.unit, e.sigma) + (held ? " (held)" : ""));
+    out.push_back(name + " = " + in_display_unit(e.value, e.unit, e.sigma) + (held ? " (fixed)" : ""));
   }
   return join_words(out);
 }
@@ -105,6 +105,11 @@ std::string best_rejected(const Candidate& candidate) {
   return "best candidate " + effect_at(candidate.effect, candidate.roles) + " (drop " +
          format_value(candidate.actual_drop.value_or(std::numeric_limits<double>::quiet_NaN())) + ", family-wise " +
          p_equals(candidate.p_value) + "), rejected: " + candidate.why;
+}
+
+std::size_t effects_tested(const Discovery& discovery) {
+  const auto tested = [](const Candidate& c) { return c.family != CandidateFamily::unknown && !c.absorbed; };
+  return static_cast<std::size_t>(std::count_if(discovery.candidates.begin(), discovery.candidates.end(), tested));
 }
 
 std::string unexplained_place(const Discovery& discovery) {

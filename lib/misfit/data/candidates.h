@@ -65,7 +65,7 @@ struct EffectPlace {
 [[nodiscard]] std::vector<std::string> words_of_place(const std::map<std::string, std::string>& roles);
 [[nodiscard]] inline std::vector<std::string> words_of_place(const Candidate& candidate) { return words_of_place(candidate.roles); }
 
-/// "input_tau = 0.060 ± 0.002 s, lagged_gain = 1 (held)".
+/// "input_tau = 0.060 ± 0.002 s, lagged_gain = 1 (fixed)".
 [[nodiscard]] std::string parameters_in_words(const Candidate& candidate);
 
 /// "best candidate lag (drop 50, family-wise p = 1e-9), rejected: its strength is not determined".
@@ -107,6 +107,9 @@ struct Discovery {
   std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have
   double seconds = 0.0;
 };
+
+/// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.
+[[nodiscard]] std::size_t effects_tested(const Discovery& discovery);
 
 /// "a force on dw/dt", "an error of V".
 [[nodiscard]] std::string unexplained_place(const Discovery& discovery);

@@ -7,6 +7,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/table.h"
+#include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/math/stable_zero.h"
 
@@ -57,8 +58,9 @@ Reference read_reference(const std::filesystem::path& path, const std::string& c
     ++folded;
   }
   if (folded > 0) {
-    reference.notes.push_back(fmt::format("{}: {} points at negative {} folded to {} by symmetry ({} is {})", reference.name, folded,
-                                          argument.name, folded_angle.name, curve, even ? "even" : "odd"));
+    reference.notes.push_back(fmt::format("{}: {} at negative {} folded to {} by symmetry ({} is {})", reference.name,
+                                          counted(static_cast<std::size_t>(folded), "point", "points"), argument.name, folded_angle.name,
+                                          curve, even ? "even" : "odd"));
   }
   points = sorted(points);
   reference.x = points.x;

@@ -280,17 +280,17 @@ std::vector<KeyGroup> initial_groups() {
 std::vector<KeyGroup> noise_groups() {
   return {{"noise", "What is known of the measurement noise; an output that is not named here: estimated, with a start from the data.",
        {{.name = "OUTPUT", .type = Type::other, .unit = "of the output", .otherwise = "estimated", .form = "number or table", .any = true,
-         .meaning = "A number: the standard deviation of its white noise, held in every method that weighs outputs by it."}}},
-      {"noise.NAME", "The same, held or as a start.",
+         .meaning = "A number: the standard deviation of its white noise, fixed in every method that weighs outputs by it."}}},
+      {"noise.NAME", "The same, fixed or as a start.",
        {{.name = "value", .type = Type::number, .unit = "of the output", .otherwise = "required", .least = 0.0, .above = true,
          .meaning = "Standard deviation."},
-        {.name = "fixed", .type = Type::flag, .fallback = "true", .meaning = "Held, or estimated from there."}}}};
+        {.name = "fixed", .type = Type::flag, .fallback = "true", .meaning = "Fixed there, or estimated from there."}}}};
 }
 
 std::vector<KeyGroup> force_groups() {
   return {{"force", std::string("The random force of ") + random_force_estimator().name + ", an Ornstein-Uhlenbeck process on every port.",
      {{.name = "correlation_time", .type = Type::number, .unit = "s", .otherwise = "estimated", .least = 0.0,
-         .meaning = "Held at this; 0: a white force (a memory of 0.3 samples)."},
+         .meaning = "Fixed at this; 0: a white force (a memory of 0.3 samples)."},
         {.name = "strength", .type = Type::table, .otherwise = "no prior",
          .meaning = "A log-normal prior of its standard deviation on the ports of one unit."}}},
       {"force.strength", "The prior of the random force's strength: its logarithm is normal about log(value) with a standard deviation of sigma/value.",

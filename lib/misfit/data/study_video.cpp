@@ -63,7 +63,7 @@ void check_tag(const DescribedSection& section, const VideoStudy& video, const M
     if (section.has("id")) section.fail("id", "only marker = \"aruco\" has an id");
     return;
   }
-  if (!marker.id) section.fail("marker", "which tag? id = 7 says it");
+  if (!marker.id) section.fail("marker", "marker = \"aruco\" needs the id of the tag to follow, as id = 7");
   if (video.fields == "top_first" || video.fields == "bottom_first")
     section.fail("marker", "a tag is read from whole frames: fields = \"" + video.fields + "\" is not possible with it");
 }

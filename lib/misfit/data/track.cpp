@@ -9,6 +9,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/table.h"
+#include "misfit/core/text.h"
 
 namespace misfit {
 namespace {
@@ -66,9 +67,12 @@ class TrackBuilder {
       throw RunError(
           fmt::format("{}: all {} samples are lost: there is no position of the apex to work with", table_.source, table_.rows()));
     }
-    if (without_time_ > 0) track_.notes.push_back(fmt::format("{} rows without a time were dropped", without_time_));
-    if (far_ > 0) track_.notes.push_back(fmt::format("{} samples more than {:.0f} px from the image centre count as lost", far_, farthest));
-    if (lost_ > 0) track_.notes.push_back(fmt::format("{} of {} samples are lost", lost_, track_.t.size()));
+    if (without_time_ > 0)
+      track_.notes.push_back(counted(without_time_, "row without a time was dropped", "rows without a time were dropped"));
+    if (far_ > 0)
+      track_.notes.push_back(fmt::format("{} more than {:.0f} px from the image centre {} as lost", counted(far_, "sample", "samples"),
+                                         farthest, far_ == 1 ? "counts" : "count"));
+    if (lost_ > 0) track_.notes.push_back(fmt::format("{} of {} samples {} lost", lost_, track_.t.size(), lost_ == 1 ? "is" : "are"));
     return std::move(track_);
   }
 

@@ -36,12 +36,12 @@ inline constexpr std::array<const char*, 3> error_kind_names = {"RMS error", "ra
 /// An error of the model before and after an effect is in it.
 struct ErrorChange {
   ErrorKind kind = ErrorKind::rms_error;
-  std::string of;                 ///< "P_y, 32 samples ahead", a random force's port; empty: of the model as a whole
+  std::string of;                 ///< "P_y 32 samples ahead", a random force's port; empty: of the model as a whole
   Estimate before;                ///< SI
   std::optional<Estimate> after;  ///< missing: no effect was added
   std::string remark;             ///< in words: "1.1 % of the motion"
 
-  /// "RMS error of P_y, 32 samples ahead".
+  /// "RMS error of P_y 32 samples ahead".
   [[nodiscard]] std::string what() const;
   /// 100 (after/before − 1); nullopt where either is not there.
   [[nodiscard]] std::optional<double> per_cent() const;
@@ -56,7 +56,7 @@ struct Verdict {
   std::vector<ErrorChange> errors;  ///< the most telling first
   std::vector<std::string> added;   ///< effects of the ladder with their estimates in its last model, a line each
   std::optional<ErrorChange> trim;  ///< before and after, beside the references of the study (remark)
-  std::string next;                 ///< what to do: a command, or a line of the study and a command; empty: nothing
+  std::string next;                 ///< what to do: a command; empty: nothing
 };
 
 /// verdict.json:

@@ -71,8 +71,9 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   e.alone_gains_nothing = !(*c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit)));
   if (!e.alone_gains_nothing) return "";
   if (!(*c.held_out_gain > 0.0)) return "the held-out log-likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
-  return "the held-out log-likelihood rises by " + format_value(*c.held_out_gain) + ", less than the " +
-         format_value(least_held_out_gain(estimated_parameters(*e.refit))) + " asked of so many parameters";
+  const int parameters = estimated_parameters(*e.refit);
+  return "the held-out log-likelihood rises by " + format_value(*c.held_out_gain) + ", but " +
+         counted(parameters, "new parameter needs", "new parameters need") + " more than " + format_value(least_held_out_gain(parameters));
 }
 
 /// Step 8: groups the best candidate with those that these data cannot distinguish from it.
@@ -170,7 +171,8 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
     if (!left && candidate_model.lags) left = remaining_memory(*e->refit, e->refit->drop, ranked, context);
     if (!left) return {e};
     e->candidate.why = "lack of fit remains: with it in the model " + left->label() + " is still significant, " + p_equals(left->p_value) +
-                       ", worth " + format_value(left->result.chi2) + " beside its drop of " + format_value(e->refit->drop);
+                       ", a predicted drop of " + format_value(left->result.chi2) + ", beside the effect's own of " +
+                       format_value(e->refit->drop);
     imitations.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }
@@ -182,14 +184,14 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
 Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Imitation>& imitations,
                              const std::vector<UnknownCurve>& unknown, HeldOut& held_out, const SearchContext& context) {
   const double least = 2.0 * choice.at->refit->drop;
-  const auto past = [&](const std::string& larger, const char* which) -> Choice {
-    choice.at->candidate.why = "explains less than half of what " + larger + " does, and " + which;
+  const auto past = [&](const std::string& larger, const std::string& which) -> Choice {
+    choice.at->candidate.why = "explains less than half of what " + larger + " does; " + which;
     return {ranked.end()};
   };
   for (const Imitation& imitation : imitations) {
     if (!(imitation.at->refit->drop > least)) continue;
     if (const auto pair = explaining_effect(*imitation.at, ranked, held_out, context)) return {imitation.at, pair};
-    return past(label(imitation.at->candidate), "that leaves a lack of fit which no second effect removes");
+    return past(label(imitation.at->candidate), "the larger one leaves a lack of fit that no second effect removes");
   }
   // A degenerate refit is no effect, but so much that something else explains is still missing beside the choice.
   for (auto e = ranked.begin(); e != ranked.end(); ++e) {
@@ -197,11 +199,11 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
     if (e->alone_gains_nothing) {
       if (const auto pair = explaining_effect(*e, ranked, held_out, context)) return {e, pair};
     }
-    return past(label(e->candidate), "that cannot be accepted");
+    return past(label(e->candidate), "the larger one cannot be accepted: " + e->candidate.why);
   }
   for (const UnknownCurve& curve : unknown) {
     if (!(curve.result.chi2 - 2.0 * curve.result.dof > least)) continue;
-    return past(curve.label(), "no known effect describes that");
+    return past(curve.label(), "no known effect describes the larger one");
   }
   return choice;
 }

@@ -128,12 +128,13 @@ std::string exchange_in_words(const FilterEstimate& estimate, const FilterEstima
     largest = change;
     most = i;
   }
-  std::string out = there[time].name + " = " + in_display_unit(there[time].value, there[time].unit);
+  std::string out =
+      "a second solution is about as good: " + there[time].name + " = " + in_display_unit(there[time].value, there[time].unit);
   constexpr double same = 0.05;
   if (most >= 0 && largest > same) out += " with " + there[most].name + " = " + in_display_unit(there[most].value, there[most].unit);
-  return out + " explains " + (other.objective > estimate.objective ? "hardly more" : "hardly less") + " (a drop " +
-         (other.objective > estimate.objective ? "higher" : "lower") + " by " +
-         format_value(2.0 * std::abs(estimate.objective - other.objective)) + ")";
+  return out + " (its drop is " + (other.objective > estimate.objective ? "higher" : "lower") + " by " +
+         format_value(2.0 * std::abs(estimate.objective - other.objective)) +
+         "); these data do not tell which time constant is the effect's";
 }
 
 }  // namespace misfit

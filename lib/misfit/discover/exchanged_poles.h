@@ -28,8 +28,8 @@ struct MovedPole {
 };
 [[nodiscard]] std::optional<MovedPole> moved_pole(const FilterEstimate& estimate, double constant, double wanted);
 
-/// "input_tau = 0.06 s with damping = 2.5 1/s explains hardly less (a drop lower by 7.8)": the parameters of `other` that differ most from
-/// those of the estimate.
+/// "a second solution is about as good: input_tau = 0.06 s with damping = 2.5 1/s (its drop is lower by 7.8); …": the parameters of `other`
+/// that differ most from those of the estimate.
 [[nodiscard]] std::string exchange_in_words(const FilterEstimate& estimate, const FilterEstimate& other, int time);
 
 }  // namespace misfit

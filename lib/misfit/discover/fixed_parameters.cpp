@@ -25,10 +25,12 @@ FilterModel with_fixed_ones_free(const FilterEstimate& estimate) {
   return out;
 }
 
-std::string in_words(const FixedParameter& held, double p_value) {
-  return fmt::format("{} is held at {}, and these data want {} ({}drop {}, family-wise {}): free it, unless it is known that well",
-                     held.name, in_display_unit(held.value, held.unit), in_display_unit(held.wanted, held.unit, held.sigma),
-                     held.actual_drop ? "" : "predicted ", format_value(held.actual_drop.value_or(held.predicted_drop)), p_equals(p_value));
+std::string in_words(const FixedParameter& fixed, double p_value) {
+  return fmt::format(
+      "{0} is fixed at {1}, but these data ask for {2} ({3}drop {4}, family-wise {5}): unless it is known that well, "
+      "estimate it (misfit set STUDY parameters.{0}.free=true)",
+      fixed.name, in_display_unit(fixed.value, fixed.unit), in_display_unit(fixed.wanted, fixed.unit, fixed.sigma),
+      fixed.actual_drop ? "" : "predicted ", format_value(fixed.actual_drop.value_or(fixed.predicted_drop)), p_equals(p_value));
 }
 
 }  // namespace
@@ -51,44 +53,44 @@ std::vector<FixedParameter> fixed_parameters(const FilterEstimate& estimate, con
   return out;
 }
 
-void free_and_refit(const RefitWork& work, FixedParameter& held) {
+void free_and_refit(const RefitWork& work, FixedParameter& fixed) {
   Model start = work.without.model;
-  Parameter& p = start.parameters[start.find_parameter(held.name)];
+  Parameter& p = start.parameters[start.find_parameter(fixed.name)];
   p.free = true;
-  p.value = std::clamp(held.wanted, std::min(p.lower, held.value), std::max(p.upper, held.value));
+  p.value = std::clamp(fixed.wanted, std::min(p.lower, fixed.value), std::max(p.upper, fixed.value));
   try {
     const auto estimated = [&] {
       return estimate_filter(start, penalties_as_of(work.without, start), work.experiments, options_like(work.without, work.threads));
     };
     FilterEstimate freed = estimated();
     if (!freed.converged || freed.objective < work.without.objective) {  // a start below which no search ends
-      p.value = held.value;
+      p.value = fixed.value;
       freed = estimated();
     }
-    const int place = freed.model.find_parameter(held.name);
+    const int place = freed.model.find_parameter(fixed.name);
     const auto sigma = standard_error_of(freed.model, freed.covariance, place);
     if (!freed.converged || !sigma) return;
-    held.wanted = freed.model.parameters[place].value;
-    held.sigma = *sigma;
-    held.actual_drop = 2.0 * (freed.objective - work.without.objective);
-    held.p_value = chi_square_tail(*held.actual_drop, 1.0);
+    fixed.wanted = freed.model.parameters[place].value;
+    fixed.sigma = *sigma;
+    fixed.actual_drop = 2.0 * (freed.objective - work.without.objective);
+    fixed.p_value = chi_square_tail(*fixed.actual_drop, 1.0);
   } catch (const RunError&) {  // what one step says stays
   }
 }
 
 std::vector<std::string> fixed_parameters_in_words(const RefitWork& work, const ScoreTest& score, const FixedSearch& search) {
   constexpr double about_as_much = 0.8;
-  std::vector<FixedParameter> held = fixed_parameters(work.without, score);
-  const double tests = search.families + static_cast<double>(held.size());
+  std::vector<FixedParameter> fixed = fixed_parameters(work.without, score);
+  const double tests = search.families + static_cast<double>(fixed.size());
   const auto refused = [&](const FixedParameter& h) { return sidak(h.p_value, tests) >= search.p_accept; };
-  std::erase_if(held, [&](const FixedParameter& h) { return refused(h) || h.predicted_drop < about_as_much * search.best_predicted; });
-  while (!held.empty()) {
-    free_and_refit(work, held.front());
-    if (!refused(held.front())) break;
-    held.erase(held.begin());
+  std::erase_if(fixed, [&](const FixedParameter& h) { return refused(h) || h.predicted_drop < about_as_much * search.best_predicted; });
+  while (!fixed.empty()) {
+    free_and_refit(work, fixed.front());
+    if (!refused(fixed.front())) break;
+    fixed.erase(fixed.begin());
   }
   std::vector<std::string> out;
-  for (const FixedParameter& h : held) out.push_back(in_words(h, sidak(h.p_value, tests)));
+  for (const FixedParameter& h : fixed) out.push_back(in_words(h, sidak(h.p_value, tests)));
   return out;
 }
 

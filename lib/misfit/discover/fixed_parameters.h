@@ -25,7 +25,7 @@ struct FixedParameter {
 [[nodiscard]] std::vector<FixedParameter> fixed_parameters(const FilterEstimate& estimate, const ScoreTest& score);
 
 /// Frees it and estimates again: `wanted`, `sigma`, `actual_drop` and `p_value`, unless no maximum is reached. TimeLimitReached.
-void free_and_refit(const RefitWork& work, FixedParameter& held);
+void free_and_refit(const RefitWork& work, FixedParameter& fixed);
 
 /// The search for effects beside which they are looked at.
 struct FixedSearch {
@@ -33,7 +33,7 @@ struct FixedSearch {
   double families = 1.0, p_accept = 0.01;
 };
 
-/// "k is held at 39 1/s^2, and these data want 40.00 ± 0.05 1/s^2 (drop 380, family-wise p = 1e-83): free it …": of those whose score
+/// "k is fixed at 39 1/s^2, but these data ask for 40.00 ± 0.05 1/s^2 (drop 380, family-wise p = 1e-83): …": of those whose score
 /// promises about as much as that of the best effect (at least 0.8 of it), or, where none is significant, that are so themselves. The first
 /// of them is freed and estimated again; where its drop is then not significant it is left out, and the next one is the first.
 /// TimeLimitReached.

@@ -208,11 +208,11 @@ void note_half_a_sample(Refit& out) {
     }
   }
   if (inputs.empty()) return;
+  constexpr const char *constant = "constant", *line = "a straight line";
   out.also = fmt::format(
-      "that is half a sampling interval ({:.4g} s), by which an input seems {} that is {} between its samples: if {} {}, write "
-      "hold = \"{}\" at {} instead",
-      half, straight ? "late" : "early", straight ? "held" : "straight", join_words(inputs), inputs.size() == 1 ? "is one" : "are such",
-      straight ? "zero_order" : "first_order", inputs.size() == 1 ? "it" : "them");
+      "that is half a sampling interval ({:.4g} s), the shift seen when the model takes an input as {} between samples and it is {}: if "
+      "that is so for {}, set hold = \"{}\" there under [inputs] instead of adding this effect",
+      half, straight ? line : constant, straight ? constant : line, join_words(inputs), straight ? "zero_order" : "first_order");
 }
 
 bool free_drifts(const RefitWork& work, Refit& out) {

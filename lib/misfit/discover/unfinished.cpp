@@ -28,7 +28,9 @@ void say_unfinished(const std::vector<std::string>& effects, Discovery& discover
 
 void say_cut_off(const std::string& spent, bool screened, Discovery& discovery) {
   if (any_accepted(discovery)) {
-    discovery.sentences.push_back(spent + " before it was tested to the end which effects these data cannot distinguish from that");
+    discovery.sentences.push_back(
+        spent +
+        ": the test for effects that these data cannot tell from the accepted one is incomplete (more time: --round-limit SECONDS)");
     return;
   }
   const std::string where = screened ? " after the candidates were tested one by one: which of them is missing is not decided"

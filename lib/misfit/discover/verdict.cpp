@@ -134,10 +134,12 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
       nearest = effect_at(c.effect, c.roles);
     }
   }
-  const std::string closest = nearest.empty() ? "" : "; the best is " + nearest + " with " + p_equals(least);
+  const std::size_t tested = out.candidates.size();
+  const std::string closest = nearest.empty() ? "" : "; the smallest p is " + format_probability(least) + " (" + nearest + ")";
   out.outcome = SearchOutcome::none_missing;
-  out.verdict = "No missing effect detected: none of " + std::to_string(out.candidates.size()) + " candidates reaches a family-wise p of " +
-                format_value(p_accept) + " with a held-out gain" + closest + ".";
+  out.verdict = "No missing effect detected: " +
+                (tested == 1 ? "the one candidate does not have both" : "none of " + std::to_string(tested) + " candidates has both") +
+                " a family-wise p below " + format_value(p_accept) + " and a held-out gain above ½ per parameter" + closest + ".";
 }
 
 std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths) {
@@ -242,22 +244,21 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
   for (auto& c : out.candidates) {
     if (wanted.size() > 1 && std::find(wanted.begin(), wanted.end(), c.effect) != wanted.end()) c.group = wanted;
   }
+  const std::string remedy = "add " + join_words(wanted) + " to [camera] free, then misfit run";
   const std::string disagreement =
       "the calibration sweep shows significant " + join_words(wanted) + ", which the camera of this study does not have";
   const std::string flight = physics_evidence(out, p_accept);
   for (auto& c : out.candidates) {
     if (!c.accepted) continue;
     c.accepted = false;
-    c.why = "the calibration sweep shows significant " + join_words(wanted) + ": recalibrate with them enabled, then rerun discover (" +
-            c.why + ")";
+    c.why = "the calibration sweep shows significant " + join_words(wanted) + ": " + remedy + " (" + c.why + ")";
   }
   out.outcome = flight.empty() ? SearchOutcome::camera_incomplete : SearchOutcome::camera_against_flight;
   if (flight.empty()) {
-    out.verdict = "The camera model is incomplete: " + disagreement + ". Recalibrate with them enabled, then rerun discover.";
+    out.verdict = "The camera model is incomplete: " + disagreement + "; " + remedy + ".";
   } else {
-    out.verdict =
-        "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight +
-        ". Recalibrate with them enabled, then rerun discover: the error of a wrong camera model can be described by a physical effect.";
+    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight + "; " + remedy +
+                  ": the error of a wrong camera model can be described by a physical effect.";
   }
 }
 

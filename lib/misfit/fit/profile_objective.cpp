@@ -14,7 +14,7 @@ std::string why_no_profile(const Model& model, const std::string& name) {
     if (p.curve < 0) free.push_back(p.name);
   }
   if (free.empty()) return "is not free: the model has no free parameter that is not a curve's coefficient";
-  return (known >= 0 ? "is held in this study, and only a free parameter has a profile" : "is no free parameter of the model") +
+  return (known >= 0 ? "is fixed in this study, and only a free parameter has a profile" : "is no free parameter of the model") +
          suggest(name, free);
 }
 

@@ -34,11 +34,13 @@ void cut(const std::vector<double>& t, const std::vector<double>& segments, Reco
     if (is_new || runs_back) out.pieces.emplace_back();
     out.pieces[own->second].push_back(i);
   }
-  if (without > 0) out.remarks.push_back(fmt::format("{} rows without a time are left out", without));
-  if (repeated > 0) out.remarks.push_back(fmt::format("{} rows repeat the time of the row before and are left out", repeated));
+  if (without > 0) out.remarks.push_back(counted(without, "row without a time is left out", "rows without a time are left out"));
+  if (repeated > 0)
+    out.remarks.push_back(counted(repeated, "row repeats the time of the row before and is left out",
+                                  "rows repeat the time of the row before and are left out"));
   if (backward > 0) {
-    out.remarks.push_back(fmt::format("time runs backward {} time{}: {} recordings in one file, an experiment each", backward,
-                                      backward == 1 ? "" : "s", out.pieces.size()));
+    out.remarks.push_back(fmt::format("time runs backward {}: {} recordings in one file, an experiment each",
+                                      counted(backward, "time", "times"), out.pieces.size()));
   }
 }
 
@@ -48,7 +50,8 @@ void leave_out_short_ones(std::size_t rows, const std::string& source, Recording
   std::erase_if(out.pieces, [](const auto& piece) { return piece.size() < fewest; });
   if (out.pieces.empty()) throw InputError({source, 0, 0}, fmt::format("{} rows: too few to be a recording", rows));
   if (out.pieces.size() < before)
-    out.remarks.push_back(fmt::format("{} of them with fewer than {} rows are left out", before - out.pieces.size(), fewest));
+    out.remarks.push_back(
+        fmt::format("{} with fewer than {} rows: left out", counted(before - out.pieces.size(), "recording", "recordings"), fewest));
 }
 
 void find_gaps(const std::vector<double>& t, RecordingTime& out) {
@@ -67,9 +70,10 @@ void find_gaps(const std::vector<double>& t, RecordingTime& out) {
   if (out.gaps.empty()) return;
   const auto longest =
       std::max_element(out.gaps.begin(), out.gaps.end(), [](const Gap& a, const Gap& b) { return a.to - a.from < b.to - b.from; });
-  out.remarks.push_back(fmt::format("{} gap{} in time, the longest from {} s to {} s: the model runs on over {}", out.gaps.size(),
-                                    out.gaps.size() == 1 ? "" : "s", format_value(longest->from), format_value(longest->to),
-                                    out.gaps.size() == 1 ? "it" : "them"));
+  out.remarks.push_back(fmt::format(
+      "{} in time, the longest {} s, after t = {} s: the model runs across short gaps, and the recording is split at long ones "
+      "(misfit help data)",
+      counted(out.gaps.size(), "gap", "gaps"), format_value(longest->to - longest->from), format_to_step(longest->from, out.step)));
 }
 
 }  // namespace

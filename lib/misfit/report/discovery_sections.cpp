@@ -18,17 +18,17 @@ constexpr double part_of_force = 10.0;  // [s], of a recording over twice as lon
 
 /// The model that a section is about.
 struct Subject {
-  std::string note;    ///< for headings: " (rung 2, strut_wake added)"
+  std::string note;    ///< for headings: ": rung 2, strut_wake added"
   std::string prefix;  ///< of the names of its figures
 };
 
 Subject of_rung(const RungInput& rung) {
-  return {fmt::format(" (rung {}, {} added)", rung.id, rung.added), fmt::format("rung_{:02}_", rung.id)};
+  return {fmt::format(": rung {}, {} added", rung.id, rung.added), fmt::format("rung_{:02}_", rung.id)};
 }
 
 /// Named only where there is a choice.
 Subject of_study(const ReportInput& input) {
-  return {input.ladder && input.ladder->rungs.size() > 1 ? " (rung 0, the study's model)" : "", ""};
+  return {input.ladder && input.ladder->rungs.size() > 1 ? ": the study's own model (rung 0)" : "", ""};
 }
 
 /// Maps worth a picture: those that stand out, at least three, at most eight. They come sorted.
@@ -107,7 +107,7 @@ void show(const Discovery& d, const std::optional<Diagnosis>& diagnosis, const S
 void show_rungs(const Ladder& ladder, Page& page) {
   for (auto rung = ladder.rungs.rbegin(); rung != ladder.rungs.rend(); ++rung) {
     const bool first = rung->added.empty();
-    page.choice("rung", fmt::format("Rung {}: {}", rung->id, first ? rung->system + ", the study's model" : rung->added + " added"),
+    page.choice("rung", fmt::format("Rung {}: {}", rung->id, first ? rung->system + ", the study's own model" : rung->added + " added"),
                 rung == ladder.rungs.rbegin());
     page.show(rung_blocks(ladder, *rung));
     page.unfold();

@@ -1,7 +1,5 @@
 #include "misfit/report/figure_batch.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -62,7 +60,8 @@ Figure batch_figure(const Batch& batch, const std::string& method, std::size_t m
     if (s.method == method) numbers.push_back(&s);
   }
   std::stable_partition(numbers.begin(), numbers.end(), [](const BatchSummary* s) { return s->name == "trim"; });
-  if (numbers.size() > most) figure.notes.push_back(fmt::format("{} more numbers are in batch.csv.", numbers.size() - most));
+  if (numbers.size() > most)
+    figure.notes.push_back(counted(numbers.size() - most, "more number is", "more numbers are") + " in batch.csv.");
   for (std::size_t k = 0; k < std::min(most, numbers.size()); ++k) figure.panels.push_back(panel_of(batch, *numbers[k], studies));
   return figure;
 }

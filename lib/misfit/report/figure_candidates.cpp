@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/text.h"
 #include "misfit/report/figures_discovery.h"
 
 namespace misfit::report {
@@ -73,7 +74,7 @@ Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t m
     panel.y_range = {0.4, static_cast<double>(count) + 0.6};
     panel.height = 40.0 + 34.0 * static_cast<double>(count);
   }
-  if (count < candidates.size()) figure.notes.push_back(fmt::format("{} more are in candidates.json.", candidates.size() - count));
+  if (count < candidates.size()) figure.notes.push_back(counted(candidates.size() - count, "more is", "more are") + " in candidates.json.");
   const auto beyond = [](const Candidate& c) { return !(c.p_value > std::pow(10.0, -longest)); };
   if (std::any_of(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count), beyond))
     figure.notes.push_back(fmt::format("p below 1e-{:.0f} is drawn as 1e-{:.0f}.", longest, longest));

@@ -113,7 +113,7 @@ Figure map_figure(const ForceMap& map) {
   figure.title = fmt::format("Missing {} against {} ({})", map.port, map.quantity, p_equals(map.p_corrected));
   figure.caption =
       fmt::format("Estimated unmodelled {} as a function of {} (free parameters re-adjusted), ± 1 sigma. {}", map.port, map.quantity,
-                  map.sentence.empty() ? "No value differs significantly from zero." : "Here " + map.sentence + ".");
+                  map.sentence.empty() ? "The map as a whole does not differ significantly from zero." : "Here " + map.sentence + ".");
   add_map(map, {"", "missing force, ± 1 sigma", palette(1)}, figure.panels.front());
   return figure;
 }

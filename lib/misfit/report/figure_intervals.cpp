@@ -81,7 +81,7 @@ Figure profile_figure(const LikelihoodProfile& p) {
   Figure figure;
   figure.name = "profile_" + as_key(p.method) + "_" + as_key(p.parameter);
   figure.title = "Profile likelihood: " + p.parameter + ", " + p.method;
-  figure.caption = "Drop 2 (log L of the fit − log L) with the parameter held at each value and all others re-estimated.";
+  figure.caption = "Drop 2 (log L of the fit − log L) with the parameter fixed at each value and all others re-estimated.";
   figure.x_label = p.parameter;
   figure.x_unit = display_unit(p.unit);
   Panel panel;

@@ -150,10 +150,10 @@ void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>
 void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& far, Errors& errors) {
   std::size_t place = 0;
   for (const auto& [channel, e] : rung.rms) {
-    add_channel(rung, {"RMS, 1 step", channel, e, place}, near, errors);
+    add_channel(rung, {"RMS, one sample ahead", channel, e, place}, near, errors);
     const auto steps = rung.k_step.find(channel);
     if (steps != rung.k_step.end() && steps->second.size() > far_ahead) {
-      const std::string what = fmt::format("RMS, {} steps", kLadderSteps[far_ahead]);
+      const std::string what = fmt::format("RMS, {} samples ahead", kLadderSteps[far_ahead]);
       add_channel(rung, {what, channel, {steps->second[far_ahead], 0.0, e.unit}, place}, far, errors);
     }
     ++place;

@@ -135,14 +135,20 @@ void notes_section(const ReportInput& input, Page& page) {
   for (const Reference& reference : input.references) add("", reference.notes);
   Blocks out;
   out.heading("Data notes");
-  if (notes.empty()) out.paragraph("No sample was dropped or rejected.");
+  if (notes.empty()) {
+    out.paragraph(
+        "No notes on the data. Measurements that a method rejected or left out are under Results, How the methods ended, and under "
+        "Parameters.");
+  }
   out.list({notes});
   page.show(out);
 }
 
 void words_section(Page& page) {
   TableBlock words{columns("word|meaning")};
-  for (const auto& [word, meaning] : main_glossary()) words.rows.push_back({word, as_sentence(meaning)});
+  for (const Glossary& glossary : {main_glossary(), further_glossary()}) {
+    for (const auto& [word, meaning] : glossary) words.rows.push_back({word, as_sentence(meaning)});
+  }
   Blocks out;
   out.heading("Words");
   out.table(std::move(words));

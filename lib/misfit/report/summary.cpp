@@ -70,6 +70,12 @@ std::optional<Figure> picture_of(const ReportInput& input) {
   return fit == nullptr ? std::nullopt : std::optional(motion_figure(fit->method, fit->predictions.front(), std::nullopt));
 }
 
+/// Without the underscores of a key; what follows a key of several words is the name of a curve, a channel, an experiment.
+std::string fact_in_words(std::string name) {
+  if (name.find(' ') == std::string::npos) std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 }  // namespace
 
 void verdict_section(const ReportInput& input, Page& page, Draw& draw) {
@@ -81,7 +87,7 @@ void verdict_section(const ReportInput& input, Page& page, Draw& draw) {
 void summary_section(const ReportInput& input, Page& page) {
   Blocks out;
   const bool effects_added = input.ladder && input.ladder->rungs.size() > 1;
-  out.heading(std::string(input.verdict ? "Results" : "Summary") + (effects_added ? " (rung 0, the study's model)" : ""));
+  out.heading(std::string("Results") + (effects_added ? ": the study's own model (rung 0)" : ""));
   page.show(out);
   Blocks results;
   if (input.comparison) results.table(method_table(*input.comparison));
@@ -106,7 +112,7 @@ void parameters_section(const ReportInput& input, Page& page) {
     out.subheading(fit.method);
     out.table(std::move(parameters));
     std::vector<std::string> facts;
-    for (const auto& [name, words] : fit.facts) facts.push_back(name + ": " + words);
+    for (const auto& [name, words] : fit.facts) facts.push_back(fact_in_words(name) + ": " + words);
     out.list({facts});
   }
   page.show(out);

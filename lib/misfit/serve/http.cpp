@@ -124,9 +124,11 @@ void put(const Answer& answer, httplib::Response& to) {
 Answer refusal(int status, const std::string& why) { return {status, why + "\n", "text/plain; charset=utf-8"}; }
 
 [[noreturn]] void refuse_port(int port) {
-  if (port <= 0) throw RunError("no port of 127.0.0.1 can be used");
-  throw RunError(
-      fmt::format("port {} of 127.0.0.1 cannot be used: another program has it, or it is a system's (--port N; 0: a free one)", port));
+  if (port <= 0) throw RunError("no free port on 127.0.0.1: end another server, or give one with --port N");
+  throw RunError(fmt::format(
+      "port {} of 127.0.0.1 cannot be used: another program has it, or it needs root (below 1024); choose another with --port N, "
+      "or leave --port out for a free one",
+      port));
 }
 
 const httplib::Headers headers = {

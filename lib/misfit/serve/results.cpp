@@ -88,10 +88,10 @@ std::vector<std::string> outdated(const Session& session, const std::vector<page
   if (const auto old = old_results(session); !old.empty()) out.push_back(changed + join_words(old) + ". Run makes them again.");
   if (!of_rungs.empty())
     out.push_back(changed + join_words(of_rungs) +
-                  ". Discover makes those of the last rung again, the others are made again when their rungs are removed and added.");
+                  ". Discover makes those of the last rung again; for the others, remove their rungs and add them again.");
   const std::optional<Ladder> rungs = known_ladder(session) ? std::nullopt : page::ladder_in(session.folder.path());
   if (rungs && rungs->rungs.size() > 1)
-    out.emplace_back("The ladder that was made is of the study as it was before, and is not shown: Add begins a new one.");
+    out.emplace_back("The ladder belongs to an earlier state of the study and is not shown. Add begins a new one.");
   return out;
 }
 

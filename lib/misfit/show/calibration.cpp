@@ -50,7 +50,6 @@ Blocks blocks_of(const Calibration& c) {
   out.heading("Calibration");
   out.paragraph(fmt::format("Camera model: {}. {}", c.model == CameraModel::pinhole ? "pinhole" : "plane by plane (the paper's Eq. 1)",
                             as_sentence(c.message)));
-  if (!c.residuals.empty()) out.paragraph(fmt::format("{} of {} coordinates were rejected as outliers.", c.outliers, c.residuals.size()));
   if (!c.converged) out.paragraph("The calibration did not converge.", Tone::warning);
   out.table(camera_table(c));
   if (!c.tests.empty()) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
+#include "misfit/core/text.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
 
@@ -26,8 +27,21 @@ std::vector<Row> rows_of(const MethodSummary& m) {
 /// Three significant digits, without unit.
 std::string short_number(double shown) { return std::isfinite(shown) ? fmt::format("{:.3g}", shown) : kMissing; }
 
+/// To a hundredth of a range, without unit.
+std::string to_range(double shown, double range) {
+  constexpr double part = 0.01;
+  return std::isfinite(shown) && range > 0.0 && std::isfinite(range) ? format_to_step(shown, part * range) : short_number(shown);
+}
+
+/// Of a quantity's levels, both ends with the digits by which they differ.
 std::string range(double low, double high, const std::string& si) {
-  return with_display_unit(short_number(display_value(low, si)) + " to " + short_number(display_value(high, si)), si);
+  const double from = display_level(low, si), to = display_level(high, si);
+  return with_level_unit(to_range(from, to - from) + " to " + to_range(to, to - from), si);
+}
+
+/// One level in such a range.
+std::string place(double at, double low, double high, const std::string& si) {
+  return with_level_unit(to_range(display_level(at, si), display_level(high, si) - display_level(low, si)), si);
 }
 
 /// Quantiles of no interest by themselves only where they are outside; correlations and spectral lines as a count.
@@ -44,7 +58,8 @@ void add_group(const MotionSeries& s, const MotionGroup& g, TableBlock& table) {
     const bool always = n.name == "mean" || n.name == "standard deviation" || n.at == 0.05 || n.at == 0.5 || n.at == 0.95;
     if (!is_known(n) || (!always && !n.outside)) continue;
     const bool level = is_level(g, n);
-    const auto number = [&](double value) { return short_number(level ? display_level(value, g.unit) : display_value(value, g.unit)); };
+    const auto displayed = [&](double value) { return level ? display_level(value, g.unit) : display_value(value, g.unit); };
+    const auto number = [&](double value) { return to_range(displayed(value), displayed(n.high) - displayed(n.low)); };
     const auto with_unit = [&](const std::string& text) { return level ? with_level_unit(text, g.unit) : with_display_unit(text, g.unit); };
     table.rows.push_back({name, g.name == "amplitude" ? "amplitude, " + n.name : n.name, with_unit(number(n.measured)),
                           with_unit(number(n.low) + " to " + number(n.high)), n.outside ? "outside" : "", p});
@@ -66,8 +81,7 @@ Blocks curve_difference_blocks(const Comparison& c) {
   TableBlock table{columns("curve|between|>RMS [sigma]|>largest [sigma]|at|difference there|compared range")};
   for (const CurveDifference& d : c.curves) {
     table.rows.push_back({d.curve, d.a + " − " + d.b, fmt::format("{:.2f}", d.rms_sigmas), fmt::format("{:.2f}", d.max_sigmas),
-                          with_display_unit(short_number(display_value(d.at, d.of_unit)), d.of_unit), shown(d.difference),
-                          range(d.from, d.to, d.of_unit)});
+                          place(d.at, d.from, d.to, d.of_unit), shown(d.difference), range(d.from, d.to, d.of_unit)});
   }
   if (!table.rows.empty()) out.subheading("Differences between curves");
   out.table(std::move(table));
@@ -98,7 +112,7 @@ Blocks blocks_of(const SimulatedMotion& motion) {
 
 Blocks blocks_of(const Comparison& c) {
   Blocks out;
-  out.heading("Comparison of methods");
+  out.heading("Results");
   out.table(method_table(c));
   std::vector<std::string> trims, parameters;
   for (const TrimDifference& d : c.trims) trims.push_back(d.sentence);

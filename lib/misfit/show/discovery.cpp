@@ -8,6 +8,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/data/verdict.h"
+#include "misfit/show/error_changes.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
 
@@ -85,9 +86,9 @@ std::string change(double before, double after) {
 class BeforeAndAfter {
  public:
   BeforeAndAfter(const Rung& before, const Rung& after) {
-    add_channels("one step ahead", before.rms, after.rms);
+    add_channels("one sample ahead", before.rms, after.rms);
     add_steps(before, after);
-    add_channels("held out, one step ahead", before.validation_rms, after.validation_rms);
+    add_channels("held out, one sample ahead", before.validation_rms, after.validation_rms);
     add_force(force_strengths(before.force), force_strengths(after.force));
     if (before.trim || after.trim) add("trim", shown(before.trim), shown(after.trim));
     if (!after.actual_drop) return;
@@ -122,7 +123,7 @@ class BeforeAndAfter {
         }
         return out;
       };
-      add_channels(fmt::format("{} steps ahead", kLadderSteps[k]), at(before), at(after));
+      add_channels(fmt::format("{} samples ahead", kLadderSteps[k]), at(before), at(after));
     }
   }
   /// A row for each unit of the ports, those of before first.
@@ -143,9 +144,8 @@ class BeforeAndAfter {
 };
 
 std::string drop_sentence(const Rung& rung) {
-  std::string out =
-      fmt::format("Drop: {} predicted, {:.1f} actual for {} parameter{}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
-                  *rung.actual_drop, parameters_added(rung), parameters_added(rung) == 1 ? "" : "s");
+  std::string out = fmt::format("Drop: {} predicted, {:.1f} actual for {}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
+                                *rung.actual_drop, counted(static_cast<std::size_t>(parameters_added(rung)), "parameter", "parameters"));
   return out + (rung.held_out_gain ? "; gain of the held-out log-likelihood: " + shown_gain(rung.held_out_gain) + "."
                                    : "; no validation data: set validation = \"last 25 %\".");
 }
@@ -158,19 +158,19 @@ TableBlock error_table(const Ladder& ladder) {
     add_rows(rungs.back().rows, "", r.rms);
     add_rows(rungs.back().rows, "", r.validation_rms, ", held out");
   }
-  return subjects_table("RMS, one step ahead", rungs);
+  return subjects_table("RMS, one sample ahead", rungs);
 }
 
 }  // namespace
 
 Blocks blocks_of(const Diagnosis& d) {
   Blocks out;
-  out.heading("Residual diagnostics of " + d.method);
+  out.heading("Where it fails (residuals of " + d.method + ")");
   out.list({as_sentences(d.sentences)});
   out.figures("maps");
   if (!d.maps.empty()) {
     out.subheading("Unexplained force");
-    out.paragraph("For a correct model, p is uniform on [0, 1]; it is corrected for the number of maps.");
+    out.paragraph("For a correct model, p (this map) is uniform on [0, 1]; p (corrected) also allows for the number of maps.");
     out.table(map_table(d));
   }
   if (!d.whiteness.empty()) {
@@ -190,7 +190,7 @@ Blocks blocks_of(const Diagnosis& d) {
 
 Blocks blocks_of(const Discovery& d) {
   Blocks out;
-  out.heading("Candidate effects");
+  out.heading("What could be missing");
   out.paragraph(as_sentence(d.verdict), Tone::lead);
   const bool accepted = std::any_of(d.candidates.begin(), d.candidates.end(), [](const Candidate& c) { return c.accepted; });
   if (accepted) {
@@ -222,11 +222,8 @@ Blocks rung_blocks(const Ladder& ladder, const Rung& rung) {
     for (auto& row : table.rows) row = {row[0], row[2]};
   }
   out.table(std::move(table));
-  constexpr double negligible_drop = 1.0;  // of the drop
-  if (rung.actual_drop) {
-    out.paragraph(drop_sentence(rung));
-    if (*rung.actual_drop < negligible_drop) out.paragraph("The drop of the added effect is not significant.", Tone::warning);
-  }
+  if (rung.actual_drop) out.paragraph(drop_sentence(rung));
+  if (explains_no_more_than_chance(rung)) out.paragraph("The added effect explains no more than chance does.", Tone::warning);
   if (!rung.note.empty()) out.paragraph(as_sentence(rung.note));
   std::vector<std::string> parameters;
   for (const auto& [name, e] : rung.parameters) parameters.push_back(name + " = " + shown(e));
@@ -245,7 +242,7 @@ Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit) {
 
 Blocks blocks_of(const Ladder& ladder) {
   Blocks out;
-  out.heading("Model ladder");
+  out.heading("Ladder");
   out.figures("ladder");
   const bool trims = std::any_of(ladder.rungs.begin(), ladder.rungs.end(), [](const Rung& r) { return r.trim.has_value(); });
   TableBlock table{

@@ -28,11 +28,11 @@ std::string share_of_motion(const Fit& fit, const std::string& channel) {
   return low == high ? low : low.substr(0, low.find(" %")) + " to " + high;
 }
 
-/// ", 32 samples (0.64 s) ahead"; without the time where the fit has no predictions.
+/// " 32 samples (0.64 s) ahead"; without the time where the fit has no predictions.
 std::string ahead(int samples, const Fit* fit) {
   const std::vector<double>* t = fit == nullptr || fit->predictions.empty() ? nullptr : &fit->predictions.front().t;
   const std::string time = t == nullptr || t->size() < 2 ? "" : " (" + duration_in_words(samples * usual_step(*t)) + ")";
-  return fmt::format(", {} samples{} ahead", samples, time);
+  return fmt::format(" {} samples{} ahead", samples, time);
 }
 
 /// The largest fall first, but a clear one of the error in what was measured before any of the random force, which says less.
@@ -45,6 +45,9 @@ void most_telling_first(std::vector<ErrorChange>& errors) {
   std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
 }
 
+/// The change is below the digits that are shown.
+bool prints_alike(const ErrorChange& e) { return e.after && briefly(e.before) == briefly(*e.after); }
+
 }  // namespace
 
 std::vector<ErrorChange> errors_of(const Fit& fit) {
@@ -52,7 +55,7 @@ std::vector<ErrorChange> errors_of(const Fit& fit) {
   const auto forces = force_strengths(fit.force);
   for (const auto& [channel, rms] : fit.rms)
     out.push_back(
-        {ErrorKind::rms_error, channel + (forces.empty() ? "" : ", one sample ahead"), rms, std::nullopt, share_of_motion(fit, channel)});
+        {ErrorKind::rms_error, channel + (forces.empty() ? "" : " one sample ahead"), rms, std::nullopt, share_of_motion(fit, channel)});
   for (const ForceStrength& f : forces)
     out.push_back({ErrorKind::random_force, forces.size() > 1 ? f.port : "", f.strength, std::nullopt,
                    is_seen(fit, f.strength) ? "" : "not distinguishable from 0"});
@@ -83,11 +86,16 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, con
   return out;
 }
 
+bool explains_no_more_than_chance(const Rung& rung) {
+  constexpr double rare = 0.01;
+  return rung.actual_drop && chi_square_tail(*rung.actual_drop, std::max(1, parameters_added(rung))) > rare;
+}
+
 std::string change_in_words(const ErrorChange& e) {
   if (e.within_sigma())
     return fmt::format("the {} changes by less than its sigma, from {} to {}", e.what(), briefly(e.before), briefly(*e.after));
   const double change = e.per_cent().value_or(0.0);
-  if (change == 0.0) return fmt::format("the {} stays at {}", e.what(), briefly(*e.after));
+  if (change == 0.0 || prints_alike(e)) return fmt::format("the {} stays at {}", e.what(), briefly(*e.after));
   return fmt::format("the {} {} from {}", e.what(), change < 0.0 ? "falls" : "rises", shown(e));
 }
 
@@ -102,6 +110,7 @@ std::string shown(const ErrorChange& e) {
   if (!e.after) return briefly(e.before) + remark;
   if (e.kind == ErrorKind::trim) return briefly(e.before) + " to " + briefly(*e.after) + remark;
   if (e.within_sigma()) return briefly(e.before) + " to " + briefly(*e.after) + " (within its sigma)";
+  if (prints_alike(e)) return briefly(*e.after) + " before and after";
   const auto change = e.per_cent();
   return briefly(e.before) + " to " + briefly(*e.after) +
          (change ? fmt::format(" ({:+.{}f} %)", *change, std::abs(*change) < 10.0 || *change < -99.0 ? 1 : 0) : "");

@@ -23,6 +23,10 @@ namespace misfit {
 /// A rise by a fifth or more, beyond its sigma where that is known.
 [[nodiscard]] bool clearly_rises(const ErrorChange& change);
 
+/// The drop of what a rung added is no more than chance gives for so many parameters. False where no likelihood compares it with the model
+/// before.
+[[nodiscard]] bool explains_no_more_than_chance(const Rung& rung);
+
 /// "the RMS error of w falls from 8 V to 1.2 V (−85 %)".
 [[nodiscard]] std::string change_in_words(const ErrorChange& change);
 

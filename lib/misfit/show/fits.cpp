@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "misfit/core/display.h"
+#include "misfit/core/text.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/show/results.h"
 #include "misfit/show/rows.h"
@@ -34,7 +35,8 @@ std::string range_of(const CurveEstimate& curve) {
 
 Blocks blocks_of(const Fit& fit) {
   Blocks out;
-  out.heading(fmt::format("{}: {} ({:.2f} s, {} linearisations)", fit.method, in_words(fit.status), fit.seconds, fit.linearisations));
+  out.heading(fmt::format("{}: {} ({:.2f} s, {})", fit.method, in_words(fit.status), fit.seconds,
+                          counted(static_cast<std::size_t>(fit.linearisations), "linearisation", "linearisations")));
   out.paragraph(fit.message);
   if (const auto integration = fit.facts.find("integration"); integration != fit.facts.end())
     out.paragraph("Integration: " + integration->second + ".");

@@ -48,6 +48,12 @@ std::vector<std::string> scalars(const Fit& fit) {
   return first_of(std::move(out), most_named);
 }
 
+/// "C_m_alpha_rate not informative: driven motion".
+std::string not_informative(const CurveEstimate& curve) {
+  const std::string why = curve.why.substr(0, curve.why.find(": "));
+  return curve.name + " not informative" + (why.empty() ? "" : ": " + why);
+}
+
 /// What fit prints in full, without the numbers and consequences behind it.
 std::vector<std::string> warnings(const Fit& fit) {
   constexpr std::size_t most = 2;
@@ -108,8 +114,9 @@ std::string line_of(const Fit& fit) {
   if (!forces.empty()) parts.push_back(force_in_words(fit, forces));
   if (fit.status == FitStatus::not_converged) parts.push_back("not converged: " + fit.message);
   std::erase(parts, "");
-  const auto silent = std::count_if(fit.curves.begin(), fit.curves.end(), [](const CurveEstimate& curve) { return !curve.informative; });
-  if (silent > 0) parts.emplace_back("damping not informative, the motion being driven");
+  for (const CurveEstimate& curve : fit.curves) {
+    if (!curve.informative) parts.push_back(not_informative(curve));
+  }
   const std::vector<std::string> warned = warnings(fit);
   if (!warned.empty()) parts.push_back("! " + joined(warned, "; "));
   return joined(parts, "; ");
@@ -134,10 +141,12 @@ std::string line_of(const Discovery& d) {
   const Candidate& best = accepted ? d.candidates.front() : *std::min_element(d.candidates.begin(), d.candidates.end(), nearer);
   const std::string name = effect_at(best.effect, best.roles);
   if (accepted) return fmt::format("missing: {} (drop {}, {})", name, shown_drop(best.actual_drop), p_equals(best.p_value));
-  const std::string tested = fmt::format("{} effects tested, none accepted", d.candidates.size());
+  const std::string tested = counted(effects_tested(d), "effect", "effects") + " tested, none accepted";
   if (!d.unexplained_port.empty())
     return fmt::format("{}: {} that depends on {} is of unknown form", tested, unexplained_place(d), d.unexplained_quantity);
-  return fmt::format("{}; nearest: {} ({})", tested, name, p_equals(best.p_value));
+  constexpr double significant = 0.01;
+  const std::string why = best.p_value < significant && !best.why.empty() ? ", rejected: " + best.why.substr(0, best.why.find(": ")) : "";
+  return fmt::format("{}; smallest p: {} ({}){}", tested, name, p_equals(best.p_value), why);
 }
 
 std::string line_of(const Ladder& ladder) {

@@ -139,8 +139,8 @@ void add_starts(const std::vector<MultiStart>& starts, Blocks& out) {
 Blocks blocks_of(const Uncertainty& u) {
   Blocks out;
   out.heading("Propagated uncertainty");
-  out.paragraph(fmt::format("Monte Carlo: the data reduction ({}) is repeated {} times with perturbed inputs (seed {}); {} runs failed.",
-                            u.method, u.runs, u.seed, u.failed));
+  out.paragraph(fmt::format("Monte Carlo: the data reduction ({}) is repeated {} with perturbed inputs (seed {}); {}.", u.method,
+                            counted(u.runs, "time", "times"), u.seed, counted(u.failed, "run failed", "runs failed")));
   out.table(perturbed_table(u));
   out.figures("bands");
   out.table(number_table(u));

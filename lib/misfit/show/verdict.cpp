@@ -62,8 +62,8 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     }
     std::string line = added_in_words(rung, ladder) + ": " + values_of(now);
     if (&rung != &last && values_of(now) != values_of(rung.parameters))
-      line += fmt::format(" in the last model ({} in model {})", values_of(rung.parameters), rung.id);
-    if (rung.held_out_gain) line += fmt::format("; held-out gain {:.1f}", *rung.held_out_gain);
+      line += fmt::format(" in the last model ({} in rung {})", values_of(rung.parameters), rung.id);
+    if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
     out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }
   if (const Estimates rest = others_of_last(ladder); !rest.empty() && !out.empty())
@@ -75,11 +75,14 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
 /// comparison that was cut off).
 enum class Evidence { needed, chance, untested };
 
-/// Chance: the drop is no more than that gives for so many parameters.
 Evidence evidence_for(const Rung& rung) {
-  constexpr double rare = 0.01;
   if (!rung.actual_drop) return Evidence::untested;
-  return chi_square_tail(*rung.actual_drop, std::max(1, parameters_added(rung))) > rare ? Evidence::chance : Evidence::needed;
+  return explains_no_more_than_chance(rung) ? Evidence::chance : Evidence::needed;
+}
+
+/// Not decided: refits were cut off by a limit of their own, which a longer round does not lift.
+const char* more_time(SearchOutcome outcome) {
+  return outcome == SearchOutcome::not_decided ? " --time-limit 3600 --round-limit 36000" : " --round-limit 3600";
 }
 
 const Candidate* accepted(const Discovery& d) {
@@ -115,7 +118,7 @@ class VerdictBuilder {
       nothing_accepted(*in_.discovery);
     }
     if (fit_ != nullptr && in_.discovery != nullptr && in_.discovery->fixed_parameters && out_.kind != VerdictKind::calibration)
-      out_.sentence += " " + as_sentence("but " + in_.discovery->fixed_parameters->front());
+      out_.sentence += " " + in_.discovery->fixed_parameters->front() + ".";  // begins with the parameter's name
     return out_;
   }
 
@@ -187,16 +190,21 @@ class VerdictBuilder {
       for (const Fit& fit : *in_.fits) why.push_back(fit.method + " " + to_string(fit.status) + ": " + fit.message);
     }
     say(VerdictKind::no_result,
-        why.empty() ? "no method was asked for" : "no method gives a result: " + fmt::format("{}", fmt::join(why, "; ")), "");
+        why.empty() ? "no method was asked for" : "no method gives a result: " + fmt::format("{}", fmt::join(why, "; ")), command("fit"));
   }
 
   /// What fits and diagnosis alone say.
   void not_searched() {
     const std::string ask = "; which effect it is has not been looked for";
-    if (fit_->force.empty() && (fit_->driven || fit_->coloured)) {
+    if (fit_->force.empty() && fit_->driven) {
       say(VerdictKind::not_searched,
-          "something is missing from the model: the residuals of " + fit_->method + " are not white" +
-              (fit_->driven ? ", since forces that it does not have drive the motion" : "") + ask,
+          "something is missing from the model: the residuals of " + fit_->method +
+              " are not white, since forces that it does not have drive the motion" + ask,
+          command("discover"));
+    } else if (fit_->force.empty() && fit_->coloured) {
+      say(VerdictKind::not_searched,
+          "something may be missing from the model, or the measurement noise is autocorrelated: the residuals of " + fit_->method +
+              " are not white; whether an effect is missing has not been looked for",
           command("discover"));
     } else if (!out_.where.empty()) {
       say(VerdictKind::not_searched, "something is missing from the model" + ask, command("discover"));
@@ -220,8 +228,10 @@ class VerdictBuilder {
     const bool flight_too = in_.discovery->outcome == SearchOutcome::camera_against_flight;
     say(VerdictKind::calibration,
         (flight_too ? "the camera comes first: its" : "it is the camera, not the physics: its") +
-            std::string(" calibration sweep asks for ") + join_words(asks) + ", which the camera of this study does not have" + residual,
-        fmt::format("set [camera] free = [\"{}\"] in the study, then {}", fmt::join(asks, "\", \""), command("run")));
+            std::string(" calibration sweep asks for ") + join_words(asks) + ", which the camera of this study does not have" + residual +
+            fmt::format("; add {} to [camera] free of the study, free = [\"{}\"], and run it again", asks.size() == 1 ? "it" : "them",
+                        fmt::join(asks, "\", \"")),
+        command("run"));
   }
 
   void missing(const Candidate& best) {
@@ -258,25 +268,36 @@ class VerdictBuilder {
     return nullptr;
   }
 
+  [[nodiscard]] static std::string by_hand(const Candidate& rejected) {
+    return effect_at(rejected.effect, rejected.roles) + " can be added by hand and judged by its held-out gain";
+  }
+  [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
+    return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
+  }
+
   void nothing_accepted(const Discovery& d) {
     if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
-      say(VerdictKind::not_decided, d.verdict, command("discover") + " --round-limit 3600");
+      say(VerdictKind::not_decided, d.verdict, command("discover") + more_time(d.outcome));
     } else if (!d.unexplained_port.empty()) {
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const EffectPlace* curve = untried(d.unexplained_effects);
       const bool in_vain = curve == nullptr && !d.unexplained_effects.empty();
       if (in_vain) unknown += "; as a curve it explains too little for its coefficients";
-      const std::string next =
-          curve != nullptr ? command("add", curve->effect) + at_place(curve->roles)
-          : in_vain        ? ""
-                           : "look where it fails (misfit open), then write the effect as one line of the study: misfit help study, and "
-                             "for its formula misfit help system";
+      if (curve == nullptr && !in_vain)
+        unknown +=
+            "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help system)";
+      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles) : in_vain ? "" : command("open");
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
-      added("whether more is missing is not decided; " + best_rejected(d.candidates.front()), "", VerdictKind::not_decided);
-    } else if (d.outcome == SearchOutcome::best_rejected || d.outcome == SearchOutcome::none_suits) {
-      say(VerdictKind::not_decided, d.verdict, "");
+      const Candidate& best = d.candidates.front();
+      added("whether more is missing is not decided; " + best_rejected(best) + "; " + by_hand(best), add_by_hand(best),
+            VerdictKind::not_decided);
+    } else if (d.outcome == SearchOutcome::best_rejected) {
+      const Candidate& best = d.candidates.front();
+      say(VerdictKind::not_decided, as_sentence(d.verdict) + " " + by_hand(best), add_by_hand(best));
+    } else if (d.outcome == SearchOutcome::none_suits) {
+      say(VerdictKind::not_decided, as_sentence(d.verdict) + " Write one as a formula under [effects]", "misfit help study");
     } else if (effects_added_) {
       added("nothing more is found missing", "");
     } else {
@@ -284,9 +305,11 @@ class VerdictBuilder {
     }
   }
   void nothing_missing(const Discovery& d) {
-    const auto effects = std::count_if(d.candidates.begin(), d.candidates.end(),
-                                       [](const Candidate& c) { return c.family != CandidateFamily::unknown && !c.absorbed; });
-    const std::string tested = fmt::format("no effect is found missing: none of {} that were tested is needed", effects);
+    const std::size_t effects = effects_tested(d);
+    const std::string tested =
+        "no effect is found missing" + (effects == 0   ? std::string(", but none of the library was tested")
+                                        : effects == 1 ? ": the one that was tested is not needed"
+                                                       : fmt::format(": none of {} that were tested is needed", effects));
     auto forces = fit_->driven ? force_strengths(fit_->force) : std::vector<ForceStrength>{};
     constexpr double sigmas = 2.0;
     std::erase_if(forces, [](const ForceStrength& f) { return !(f.strength.value > sigmas * f.strength.sigma); });
@@ -304,8 +327,8 @@ class VerdictBuilder {
     const ForceMap* before = fails ? &in_.diagnosis->maps.front() : nullptr;
     const ForceMap* after = fails ? map_after(*before) : nullptr;
     if (after != nullptr && (out_.errors.empty() || !is_telling(out_.errors.front())))
-      return fmt::format("the map of {} over {} goes from {} to {}", before->port, before->quantity, p_equals(before->p_corrected),
-                         p_equals(after->p_corrected));
+      return fmt::format("the missing {} against {} changes in significance: {} before, {} now", before->port, before->quantity,
+                         p_equals(before->p_corrected), p_equals(after->p_corrected));
     if (out_.errors.empty()) return "";
     std::string out = change_in_words(out_.errors.front());
     for (const ErrorChange& e : std::span(out_.errors).subspan(1)) {

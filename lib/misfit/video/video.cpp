@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "misfit/core/error.h"
+#include "misfit/core/text.h"
 #include "misfit/video/clock.h"
 #include "misfit/video/module.h"
 #include "misfit/video/stream.h"
@@ -185,15 +186,18 @@ std::vector<std::string> notes_of(const VideoFacts& facts) {
                     static_cast<double>(reached) / facts.rate));
   }
   if (facts.missing > 0)
-    notes.push_back(
-        fmt::format("{}: {} frames are missing between others, as its timestamps show: their samples are lost", facts.file, facts.missing));
+    notes.push_back(fmt::format("{}: {} missing between others, as its timestamps show: {} lost", facts.file,
+                                counted(facts.missing, "frame is", "frames are"),
+                                facts.missing == 1 ? "its sample is" : "their samples are"));
   if (facts.variable) {
     notes.push_back(
         fmt::format("{}: its frames do not follow each other at a constant rate: every sample has the time that the file gives "
                     "its frame (in the mean {:.4g} frames/s)",
                     facts.file, facts.rate));
   }
-  if (facts.repeated > 0) notes.push_back(fmt::format("{}: {} frames are exact copies of the frame before", facts.file, facts.repeated));
+  if (facts.repeated > 0)
+    notes.push_back(fmt::format("{}: {} of the frame before", facts.file,
+                                counted(facts.repeated, "frame is an exact copy", "frames are exact copies")));
   return notes;
 }
 

@@ -4,6 +4,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/text.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/job_queue.h"
@@ -145,7 +146,7 @@ std::optional<FittedBatch> fit_batch(const SessionOptions& options, const std::v
     if (!folder->lost_record().empty()) options.listener.hear(folder->lost_record());
   });
   const StoredJobs jobs{job.folder() / "checkpoints", job.digest(), job.size(), options.threads};
-  const ProgressFn progress = options.listener.begin(fmt::format("batch of {} studies", job.size()));
+  const ProgressFn progress = options.listener.begin("batch of " + counted(job.size(), "study", "studies"));
   const JobResults results = finished(run_stored_jobs(
       jobs, [&](std::size_t k) { return job.run(k); }, progress, &interrupted()));
   stop_if_interrupted();

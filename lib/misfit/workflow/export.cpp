@@ -106,8 +106,8 @@ Fit chosen_fit(const Session& session, const std::string& asked) {
     why += (why.empty() ? "" : "; ") + name + " " + to_string(fit.status) + ": " + fit.message;
   }
   if (!why.empty()) throw RunError("no estimate to export: " + why);
-  throw InputError(fmt::format("{}: there is no estimate to export yet; misfit run {} makes one",
-                               session.folder.path().lexically_normal().string(), session.study.file.lexically_normal().string()));
+  throw InputError(fmt::format("{}: there is no estimate to export yet; {} makes one", session.folder.path().lexically_normal().string(),
+                               misfit_command("run", session.study.file.lexically_normal().string(), "", session.options.out)));
 }
 
 Model model_at(Session& session, const Fit& fit) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "misfit/core/shell_word.h"
 #include "misfit/workflow/ladder.h"
 
 namespace misfit {
@@ -12,8 +13,9 @@ namespace fs = std::filesystem;
 /// On disk but of another fit: a note, since a section would otherwise be missing without a word.
 void note_stale(const Session& session, const char* file, const char* verb, std::vector<std::string>& notes) {
   if (!fs::exists(session.folder.file(file))) return;
-  notes.push_back(fmt::format("{} belongs to another fit and is omitted; misfit {} makes it again.",
-                              session.folder.file(file).lexically_normal().string(), verb));
+  notes.push_back(fmt::format("{} belongs to an earlier fit and is left out; {} makes it again.",
+                              session.folder.file(file).lexically_normal().string(),
+                              misfit_command(verb, session.study.file.lexically_normal().string(), "", session.options.out)));
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
   }
 }
 
-/// "width is held at 0.5 rad/s": values that discovery found and the study of the rung holds; they stand in no table of estimates.
+/// "width is fixed at 0.5 rad/s": values that discovery found and the study of the rung fixes; they stand in no table of estimates.
 std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
   std::vector<std::string> out;
   for (const auto& [name, e] : from.parameters) {
@@ -145,16 +145,16 @@ std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
       const std::string known = p.first.substr(0, p.first.find('['));  // of a curve, whose coefficients are estimated
       return known == own || known.ends_with("." + own);
     });
-    if (!estimated) out.push_back(name + " is held at " + in_display_unit(e.value, e.unit));
+    if (!estimated) out.push_back(name + " is fixed at " + in_display_unit(e.value, e.unit));
   }
   return join_words(out);
 }
 
-/// "c is held at 0.5 1/s: the curve takes over what it does".
+/// "c is fixed at 0.5 1/s: the curve takes over what it does".
 std::string fixed_parameters_in_words(const std::map<std::string, Estimate>& held) {
   std::string out;
   for (const auto& [name, e] : held)
-    out += (out.empty() ? "" : "; ") + name + " is held at " + in_display_unit(e.value, e.unit) + ": the curve takes over what it does";
+    out += (out.empty() ? "" : "; ") + name + " is fixed at " + in_display_unit(e.value, e.unit) + ": the curve takes over what it does";
   return out;
 }
 
@@ -314,13 +314,14 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   rung.study = relative_study(*child);
   rung.added = effect;
   if (study.system) {
-    append_note(rung.note,
-                "no likelihood compares two systems: their channels and states differ; compare k-step errors and the random force");
+    append_note(
+        rung.note,
+        "no likelihood compares two systems: their channels and states differ; compare the errors some samples ahead and the random force");
     for (const auto& left : study.left_out) append_note(rung.note, "effect '" + left + "' is left out: it does not suit " + study.name);
   } else {
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
-    if (from) append_note(rung.note, fixed_parameters_in_words(from->held));
+    if (from) append_note(rung.note, fixed_parameters_in_words(from->fixed_in_model));
     if (from) rung.roles = from->roles;
     if (from) rung.also = from->also;
     if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));

@@ -163,9 +163,19 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
     if (gaps->extreme < fewest_extreme || static_cast<double>(gaps->extreme) <= clearly_more * by_chance * missing) continue;
     fit.warnings.push_back("experiment '" + signals.name + "': the gaps are not random: in " + std::to_string(gaps->extreme) + " of " +
                            std::to_string(gaps->missing) +
-                           " missing samples the motion is predicted beyond 99 % of what was measured (it left the picture): extreme "
+                           " missing samples the motion is predicted beyond 99 % of what was measured (a sensor at its "
+                           "limit, or a marker out of the picture): extreme "
                            "motion is under-represented");
   }
+}
+
+/// Of the times of measurements at which the filter's linearisation is not valid.
+std::string excluded_in_words(const std::vector<double>& times) {
+  const auto [first, last] = std::minmax_element(times.begin(), times.end());
+  const std::string at = format_value(*first),
+                    place = times.size() == 1 ? "at t = " + at + " s is" : "between t = " + at + " s and " + format_value(*last) + " s are";
+  return counted(times.size(), "measurement", "measurements") + " " + place +
+         " excluded: the filter's linearisation is not valid there (it changes when a parameter moves by 0.05 sigma)";
 }
 
 /// Where the study has one initial state for all experiments.
@@ -315,22 +325,18 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   test_innovations(estimate, fit);
   if (!estimate.integration.empty()) fit.facts["integration"] = estimate.integration;
   for (const auto& data : estimate.data) {
-    if (!data.inputs.plan.lack.empty()) fit.warnings.push_back(data.signals->name + ": " + data.inputs.plan.lack);
+    if (!data.inputs.plan.lack.empty()) fit.warnings.push_back("experiment '" + data.signals->name + "': " + data.inputs.plan.lack);
   }
   fit.facts["effective_parameters"] = format_value(estimate.edf);
   fit.facts["newton_decrement"] = estimate.newton_decrement ? "one more Newton step on the exact likelihood would raise it by " +
                                                                   format_value(*estimate.newton_decrement)
                                                             : "not verified";
   fit.warnings.insert(fit.warnings.end(), estimate.notes.begin(), estimate.notes.end());
-  if (!estimate.nonlinear.empty()) {
-    const auto [first_at, last_at] = std::minmax_element(estimate.nonlinear.begin(), estimate.nonlinear.end());
-    fit.warnings.push_back(std::to_string(estimate.nonlinear.size()) + " measurements between t = " + format_value(*first_at) + " and " +
-                           format_value(*last_at) +
-                           " s are excluded: the filter is too nonlinear there (a parameter change of 0.05 sigma)");
-  }
+  if (!estimate.nonlinear.empty()) fit.warnings.push_back(excluded_in_words(estimate.nonlinear));
   if (estimate.outliers > 0)
-    fit.warnings.push_back(std::to_string(estimate.outliers) +
-                           " measurements more than 5 sigma from their prediction are rejected as outliers");
+    fit.warnings.push_back(counted(static_cast<std::size_t>(estimate.outliers),
+                                   "measurement more than 5 sigma from its prediction is rejected as an outlier",
+                                   "measurements more than 5 sigma from their prediction are rejected as outliers"));
   const FilterData& first = estimate.data.front();
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "misfit/fit/filter/filter_search.h"
+#include "misfit/fit/filter/free_approach.h"
 
 namespace misfit {
 namespace {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "misfit/core/text.h"
 #include "misfit/data/ladder.h"
 #include "misfit/fit/filter/settled.h"
 
@@ -81,8 +82,8 @@ std::string words_on(const Errors& errors) {
   for (std::size_t l = 0; l < lengths; ++l) {
     if (errors.diverged[l] == 0) continue;
     out += out.empty() ? "" : "; ";
-    out += fmt::format("{} of {} free runs diverge within {} step{}: ", errors.diverged[l], errors.runs[l], kLadderSteps[l],
-                       kLadderSteps[l] == 1 ? "" : "s");
+    out += fmt::format("{} of {} free runs diverge within {}: ", errors.diverged[l], errors.runs[l],
+                       counted(static_cast<std::size_t>(kLadderSteps[l]), "sample", "samples"));
     out += too_few(errors, l) ? "no error is given there" : "they are not in its error";
   }
   return out;

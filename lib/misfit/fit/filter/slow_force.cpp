@@ -76,7 +76,7 @@ std::string warning_of_slow_force(const FilterEstimate& estimate) {
   }
   return fmt::format(
       "the random force is slow: its correlation time is {}, the motion's shortest period {}. What changes as slowly and is no larger ({}) "
-      "may be attributed to it: an offset, dry friction or drag may be estimated too small. Compare with output_error, or hold [force] "
+      "may be attributed to it: an offset, dry friction or drag may be estimated too small. Compare with output_error, or fix [force] "
       "correlation_time (0: white)",
       roughly(time, "s"), roughly(period, "s"), strengths);
 }

@@ -257,7 +257,7 @@ std::string compared(double percent) {
   constexpr double clearly = 30.0;  // per cent: then it is overdamped, or it would have been taken
   if (percent < 1.0) return "does not lower the held-out error";
   if (percent < clearly) return fmt::format("lowers the held-out error by only {:.0f} %", percent);
-  return fmt::format("lowers the held-out error by {:.0f} % and does not swing: what that is, the search will say", percent);
+  return fmt::format("lowers the held-out error by {:.0f} % and does not swing: misfit discover tests what that is", percent);
 }
 
 /// With or without a pull back to rest: without, if the error is hardly higher.
@@ -341,7 +341,7 @@ std::optional<LinearGuess> drifting_first_order(const GuessData& data, double ex
   LinearGuess out = first_order(search, found, 0.0);
   out.rest += out.gain.back() * mean_and_sigma(data.t).mean;
   out.gain.pop_back();
-  out.why = fmt::format("first order, time constant about {:.3g} s: with a drift in time beside it, {}; what drifts, the search will say",
+  out.why = fmt::format("first order, time constant about {:.3g} s: with a drift in time beside it, {}; misfit discover tests what drifts",
                         out.tau, fits);
   return out;
 }

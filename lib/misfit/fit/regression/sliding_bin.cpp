@@ -228,9 +228,10 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
   fit.facts["telescoped_sum"] = sum;
   const double known = pass.all.damping - pass.damping_of_acceleration;
   fit.parameters[name + "_all_data"] = {pass.all.damping, pass.all.damping_sigma, fit.curves.back().unit};
-  fit.facts["all_data"] = name + " = " + format_value(pass.all.damping, pass.all.damping_sigma) +
-                          " by least squares over all data at once: " + format_value(pass.damping_of_acceleration) +
-                          " from the acceleration and " + format_value(known) + " from the terms taken as known";
+  const std::string unit = fit.curves.back().unit;
+  fit.facts["all_data"] = name + " = " + in_display_unit(pass.all.damping, unit, pass.all.damping_sigma) +
+                          " by least squares over all data at once: " + in_display_unit(pass.damping_of_acceleration, unit) +
+                          " from the acceleration and " + in_display_unit(known, unit) + " from the terms taken as known";
   if (fit.driven) {
     fit.warnings.push_back("the motion is driven by something this equation does not have (" + fit.facts["whiteness"] + ")");
   }
@@ -242,8 +243,8 @@ void report_damping(const BinForm& form, const Pass& pass, Fit& fit) {
     fit.warnings.push_back(name + " of this method is not informative, the motion being driven: " + telescopes +
                            ", and by bins it is a third moment of the motion");
   } else if (pass.test.deterministic()) {
-    fit.warnings.push_back(telescopes + ". The equation explains most of the acceleration (" + fit.facts["whiteness"] +
-                           "): the bins are used");
+    fit.warnings.push_back("the bins are used, since the equation explains most of the acceleration (" + fit.facts["whiteness"] +
+                           "): " + telescopes);
   } else {
     const bool tested = pass.test.tested();
     mark_not_informative(form.model, name,

@@ -89,7 +89,7 @@ void OutputErrorIntegration::describe(FittedModel& out) const {
   out.integration = tolerance_;
   const std::vector<IntegrationPlan> used = plans();
   for (std::size_t e = 0; e < used.size(); ++e) {
-    if (!used[e].lack.empty()) out.fit.warnings.push_back(experiments_[e].name + ": " + used[e].lack);
+    if (!used[e].lack.empty()) out.fit.warnings.push_back("experiment '" + experiments_[e].name + "': " + used[e].lack);
   }
   std::string& fact = out.fit.facts["integration"];
   fact = in_words(used, plans_);

@@ -138,8 +138,8 @@ std::vector<double> sizes_where_given(const SimulatedRuns& end) {
   std::vector<double> out;
   for (std::size_t o = 0; o < end.shooting.sigma().size(); ++o) {
     const auto [squares, count] = squares_of(channel_residuals(end, o));
-    const bool held = end.shooting.model().known_noise[o].fixed && squares > 0.0;
-    out.push_back(held_out ? std::sqrt(squares / count) / end.shooting.sigma()[o] : 1.0);
+    const bool given = end.shooting.model().known_noise[o].fixed && squares > 0.0;
+    out.push_back(given ? std::sqrt(squares / count) / end.shooting.sigma()[o] : 1.0);
   }
   return out;
 }
@@ -376,7 +376,7 @@ void warn_of_other_noise(const Model& model, Fit& fit) {
     const double ratio = rms->second.value / model.known_noise[o].sigma;
     if (ratio > 1.0 / most && ratio < most) continue;
     fit.warnings.push_back("residuals of " + outputs[o].name + " are " + format_value(ratio) +
-                           " times as large as the measurement noise that the study holds, on which the standard errors rest");
+                           " times as large as the measurement noise that the study fixes, on which the standard errors rest");
   }
 }
 

@@ -97,10 +97,10 @@ export function editor({ get, post, look }) {
     const area = element('textarea', { spellcheck: 'false', wrap: 'off', 'aria-label': 'Text of the study', readonly: !fresh.editable, oninput: typed });
     area.value = kept ? text : fresh.text;
     parts = { editable: fresh.editable, area, lines: element('pre', { 'aria-hidden': 'true' }), message: element('p', { 'aria-live': 'polite', id: 'check' }),
-      furtherHead: element('p', { hidden: true }, 'Further, with the values in the lines above left out:'), further: element('ul', { class: 'fault', id: 'further' }),
+      furtherHead: element('p', { hidden: true }, 'More errors, found after skipping those already listed:'), further: element('ul', { class: 'fault', id: 'further' }),
       save: element('button', { id: 'save', class: 'main', onclick: save }, 'Save'), undo: element('button', { onclick: undo }, 'Undo all') };
     area.addEventListener('scroll', () => (parts.lines.scrollTop = area.scrollTop));
-    view.append(element('p', { class: 'soft' }, fresh.file, fresh.editable ? '' : ': the study of a rung, written by misfit; the study itself is edited with model 0.'),
+    view.append(element('p', { class: 'soft' }, fresh.file, fresh.editable ? '' : ': the study of a rung, written by misfit; the study itself is edited with its own model (rung 0).'),
       element('div', { class: 'editor' }, parts.lines, area), parts.message, parts.furtherHead, parts.further);
     if (fresh.editable) view.append(element('div', { class: 'buttons' }, parts.save, parts.undo));
     number();

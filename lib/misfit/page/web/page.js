@@ -111,6 +111,10 @@ function showVerdict(all) {
 }
 phone.addEventListener('change', () => { if (!phone.matches) at('verdict').querySelector('details')?.setAttribute('open', ''); });
 
+/** How a command failed, by its exit status. */
+const failure = ({ status }) => (status === 2 ? 'refused: its message says what is wrong with the study or the command'
+  : `not finished (status ${status}): its message says why`);
+
 /** What misfit says against an effect, without its name again; the whole sentence is the title. */
 function reason(why) {
   const said = why.replace(/^effect '[^']*' (is )?/, '').replace(/^does not suit this model: (effect '[^']*': )?/, '').replace(/ \(.*\)$/, '');
@@ -135,7 +139,7 @@ function showJob(job) {
   box.dataset.number = job.number;
   if (!running && box.dataset.shown === `${job.number}`) return;
   box.dataset.shown = running ? '' : `${job.number}`;
-  const end = { running: job.stopping ? 'stopping' : 'at work', done: 'done', stopped: 'stopped: what was finished is kept', failed: `ended with status ${job.status}` };
+  const end = { running: job.stopping ? 'stopping' : 'at work', done: 'done', stopped: 'stopped: what was finished is kept', failed: failure(job) };
   const head = element('p', {}, element('b', {}, end[job.state]), ` · ${shown(job.seconds, 3)} s`);
   if (running && job.work) head.append(` · ${job.work} `, job.part === null ? '' : element('progress', { value: job.part, max: 1 }),
     job.left === null ? '' : ` at most ${shown(job.left, 2)} s left`);
@@ -219,7 +223,7 @@ class Began {
     if (job.state === 'running') this.say(job.stopping ? 'stopping' : 'at work', { clock, stop: job.stopping ? 'Stop at once' : 'Stop' });
     else if (job.state === 'done') this.say('done', { clock });
     else if (job.state === 'stopped') this.say('stopped', { clock });
-    else this.say(job.notes.at(-1) ?? `ended with status ${job.status}`, { bad: true });
+    else this.say(job.notes.at(-1) ?? failure(job), { bad: true });
   }
   /** Of a button that cannot be used any more: to what is next, the end of the command, or to what began it. */
   takeFocus(running) {
@@ -409,7 +413,9 @@ function timeShown(t) {
 }
 time.onzoom = (window) => { at('time').dataset.window = window === null ? '' : window.join(' '); };
 time.onbegun = (t) => { at('marked').textContent = `Marked from ${timeShown(t)} s: m again where it ends`; };
-time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${timeShown(from)} s to ${timeShown(to)} s`, true);
+/** The ends of an interval, with the digits by which they differ. */
+const endsShown = (from, to) => [from, to].map((end) => shownPlace(end, 10 * (to - from))).join(' to ');
+time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${endsShown(from, to)} s`, true);
 
 /** Two times, to a millionth of what lies between them: a mouse knows no more. */
 function written([from, to]) {
@@ -464,7 +470,7 @@ function intervals(t, inside) {
 
 async function showWhere(view) {
   const where = here.where;
-  if (!where) return nothing(view, 'This model is not diagnosed yet: Run (or misfit diagnose) does it, from the residuals of filter_error.');
+  if (!where) return nothing(view, 'This model is not diagnosed yet. Discover (or misfit diagnose) does it; Run does it only if filter_error is among the methods of the study.');
   const conclusions = where.blocks.find((b) => b.kind === 'list');
   if (conclusions) view.append(blocks([conclusions]));
   const all = [...where.maps, ...where.pairs].sort((a, b) => (a.p ?? 2) - (b.p ?? 2)); // the most significant first; without a p last
@@ -514,7 +520,7 @@ async function showMap(body, map, current) {
     if (fixed) figure.fixedCells = figure.cells;
     figure.highlight();
     const { out, count } = intervals(t, (i) => values[i] !== null && values[i] >= from && values[i] < to);
-    mark(out, `Marked: ${count} samples with ${map.quantity} from ${shown(from, 4)} to ${shown(to, 4)} ${unit}`, fixed);
+    mark(out, `Marked: ${count} samples with ${map.quantity} from ${endsShown(from, to)} ${unit}`, fixed);
   };
   const figure = draw(body, map.change ?? map.figure, { height: 0.8,
     onpoint: (plot, x) => choose(plot.view, x, false), onpick: (plot, x) => choose(plot.view, x, true), onkeypoint: (plot, x) => choose(plot.view, x, true),
@@ -545,8 +551,8 @@ async function showPair(body, map, current) {
     if (!x || !y) return;
     const { out, count } = intervals(x.t, (i) => x.values[i] !== null && y.values[i] !== null && x.values[i] >= box[0] && x.values[i] < box[1] &&
       y.values[i] >= box[2] && y.values[i] < box[3]);
-    mark(out, `Marked: ${count} samples with ${map.x} from ${shown(box[0], 4)} to ${shown(box[1], 4)} ${plain(map.figure.xUnit)} and ${map.y} from ` +
-      `${shown(box[2], 4)} to ${shown(box[3], 4)} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`, fixed);
+    mark(out, `Marked: ${count} samples with ${map.x} from ${endsShown(box[0], box[1])} ${plain(map.figure.xUnit)} and ${map.y} from ` +
+      `${endsShown(box[2], box[3])} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`, fixed);
   };
   draw(body, map.figure, { height: 0.9, onpoint: (plot, px, py) => choose(plot.view, px, py, false), onpick: (plot, px, py) => choose(plot.view, px, py, true),
     onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.highlight(); mark([], '', false); } });
@@ -632,7 +638,7 @@ async function showCurves(view) {
   figures.forEach((figure, k) => roughnessOf(curves.roughness.filter((path) => path.curves[0].figure === k), figures, figure.node));
   view.append(blocks(curves.blocks));
   if (!live) return;
-  if (here.model !== 0) nothing(view, "Parameters are held and roughness is set with model 0, the study's own.");
+  if (here.model !== 0) nothing(view, "Parameters are fixed and roughness is set with the study's own model (rung 0).");
   else if (here.state.study.fault === null) view.append(settings());
 }
 
@@ -686,15 +692,15 @@ function roughnessOf(paths, figures, parent) {
 function settings() {
   const set = (what, name, value) => start(`${what} ${name}`, 'set', { what, name, value });
   const rows = here.state.settable.parameters.map(({ name, label, unit, free }) => element('tr', {}, element('td', {}, words(label), ' [', words(unit), ']'),
-    element('td', {}, free ? 'estimated' : 'held'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, 'data-key': `free ${name}`, disabled: !here.idle,
-      onclick: () => set('free', name, `${!free}`) }, free ? 'Hold' : 'Estimate'))));
+    element('td', {}, free ? 'estimated' : 'fixed'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, 'data-key': `free ${name}`, disabled: !here.idle,
+      onclick: () => set('free', name, `${!free}`) }, free ? 'Fix' : 'Estimate'))));
   for (const { name, label, unit, roughness } of here.state.settable.curves) {
     const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}` });
     rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), '], larger: smoother'), element('td', {}, box), element('td', {},
       element('button', { class: 'sets', 'data-roughness': name, 'data-key': `roughness ${name}`, title: 'auto, or a number of at least 0', disabled: !here.idle,
         onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
   }
-  return element('details', { id: 'settings', open: here.settingsOpen, ontoggle: (event) => (here.settingsOpen = event.target.open) }, element('summary', {}, 'Hold or estimate a parameter, change a roughness'), fittedTable(element('table', {}, element('tbody', {}, ...rows))),
+  return element('details', { id: 'settings', open: here.settingsOpen, ontoggle: (event) => (here.settingsOpen = event.target.open) }, element('summary', {}, 'Fix or estimate a parameter, change a roughness'), fittedTable(element('table', {}, element('tbody', {}, ...rows))),
     element('p', { class: 'soft' }, 'A change is written into the study; Run makes the results anew.'));
 }
 

@@ -149,9 +149,9 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
 }
 
 std::string study_text(const std::string& name, const std::vector<std::string>& parts, const RecordingSurvey& survey) {
-  std::string text =
-      fmt::format("# Written by misfit init from {}: {}, {} rows, one each {:g} s. Guesses carry their reason: change what is wrong.\n",
-                  toml_comment(std::filesystem::path(survey.source).filename().string()), survey.format, survey.rows, survey.step);
+  std::string text = fmt::format(
+      "# Written by misfit init from {}: {}, {} rows, one sample every {:g} s. Guesses carry their reason: change what is wrong.\n",
+      toml_comment(std::filesystem::path(survey.source).filename().string()), survey.format, survey.rows, survey.step);
   for (const auto& remark : survey.remarks) text += "# Note: " + toml_comment(remark) + ".\n";
   text += fmt::format(
       "[study]\n"
@@ -171,7 +171,9 @@ std::string study_text(const std::string& name, const std::vector<std::string>& 
         "# exclude = 5                # initial samples that do not count\n",
         toml_string(part), toml_string(part + ".csv"));
   }
-  return text + "\n[effects]                    # what the model lacks: `misfit discover` names it, `misfit add` puts it here\n";
+  return text +
+         "\n[effects]                    # what the model lacks: `misfit discover` names it; `misfit add` writes a new study, a rung, and "
+         "leaves this one\n";
 }
 
 }  // namespace misfit

@@ -1,8 +1,8 @@
 #include "misfit/workflow/measure/samples.h"
 
-#include <fmt/format.h>
-
 #include <limits>
+
+#include "misfit/core/text.h"
 
 namespace misfit {
 namespace {
@@ -26,7 +26,8 @@ std::vector<double> sample_times(const std::vector<std::optional<double>>& read,
       out.push_back(*t - (*t - from) * static_cast<double>(k - i) / static_cast<double>(k - last + 1));
   }
   if (out.size() < read.size())
-    warnings.push_back(fmt::format("{} frames at the end have no time of their own and are left out", read.size() - out.size()));
+    warnings.push_back(counted(read.size() - out.size(), "frame at the end has no time of its own and is left out",
+                               "frames at the end have no time of their own and are left out"));
   return out;
 }
 

@@ -56,7 +56,7 @@ bool is_free(const Model& model, const std::string& name) {
 void require_held(const Source& where, const Model& model, const std::string& name) {
   if (!is_free(model, name)) return;
   throw InputError(where, "'" + shown(name) +
-                              "' is estimated by this study: only what is held can be perturbed (hold it in [parameters], or leave it out "
+                              "' is estimated by this study: only what is fixed can be perturbed (fix it in [parameters], or leave it out "
                               "here)");
 }
 
@@ -90,7 +90,7 @@ void Rig::note_held_camera(const Model& model) {
   for (const std::string& name : perturbations_.names()) {
     if (!is_camera(name) || model.find_parameter(name) < 0) continue;
     notes_.emplace_back(
-        "Camera parameters that are perturbed are held in every run, and in the nominal fit here, instead of being estimated with their "
+        "Camera parameters that are perturbed are fixed in every run, and in the nominal fit here, instead of being estimated with their "
         "calibration as prior.");
     return;
   }
@@ -126,7 +126,7 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
     for (const auto& [name, entry] : known_) {
       if (!is_free(model, name)) valid.push_back(name);
     }
-    throw InputError(where, "nothing that is held in this study is called '" + shown(request.name) + "'" + suggest(request.name, valid));
+    throw InputError(where, "nothing that is fixed in this study is called '" + shown(request.name) + "'" + suggest(request.name, valid));
   }
   const auto& [unit, value] = known->second;
   if (!request.number.unit.empty() && !parse_unit(request.number.unit).same_dimension(parse_unit(unit)))
