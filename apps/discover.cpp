@@ -41,7 +41,7 @@ LadderListener ladder_listener(ModelLadder& ladder, const Options& options) {
     listener.discovered = [](const Discovery& discovery) { print_stage("discover", line_of(discovery)); };
     listener.added = [](const Rung& rung) {
       print_stage("add", rung.added + ": " + line_of(rung) +
-                             "; these are its estimates in this model, and the test whether the rung stays comes next");
+                             "; the test whether it stays comes next");
     };
   }
   return listener;

@@ -141,7 +141,7 @@ Discovery example_discovery() {
   Candidate other;
   other.rank = 2;
   other.effect = "unknown:pitching_moment(phi)";
-  other.described = true;
+  other.absorbed = true;
   other.predicted_drop = nan;
   wake.added = {{"flight", {0.0, 0.5}, {"pitching_moment", "lateral_moment"}, {"N m", "N m"}, {{1.0, -2.0}, {0.0, 3.5}}},
                 {"second", {4.0}, {"lateral_moment"}, {"N m"}, {{7.0}}}};
@@ -240,7 +240,7 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   EXPECT_EQ(wake.dof, 2);
   EXPECT_EQ(wake.parameters.at("clock").value, -1.57);
   EXPECT_EQ(wake.force.at("moment").value, 26.9);
-  EXPECT_TRUE(back.candidates[1].described);
+  EXPECT_TRUE(back.candidates[1].absorbed);
   EXPECT_FALSE(back.candidates[1].actual_drop.has_value());
 }
 

@@ -248,7 +248,7 @@ TEST(NamedCandidate, WhatTheModelAllButDescribesIsDescribedUnlessTheRestIsBeyond
   const auto described = [&](double independent, double p) {
     screening.result.independent = independent;
     screening.p_value = p;
-    return named_candidate(screening, world.families()).described;
+    return named_candidate(screening, world.families()).absorbed;
   };
   EXPECT_FALSE(described(0.5, 0.5));
   EXPECT_TRUE(described(0.005, 0.01));

@@ -46,9 +46,9 @@ EffectStart start_found(const Effect& effect, const Candidate& from) {
 }
 
 /// The study's text with these parameters of the model fixed at these values.
-std::string with_held(std::string text, const Session& session, const ModelRequest& model, const std::map<std::string, Estimate>& held) {
+std::string with_fixed(std::string text, const Session& session, const ModelRequest& model, const std::map<std::string, Estimate>& fixed) {
   const std::map<std::string, std::string> names = parameter_names(model, session.registry);
-  for (const auto& [name, estimate] : held) {
+  for (const auto& [name, estimate] : fixed) {
     std::vector<std::string> path = parameter_path(text, name_in_study(session.study, names, name));
     const auto set = [&](const char* key, const std::string& value) {
       path.emplace_back(key);
@@ -142,7 +142,7 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   const std::string text = text_for_folder(session.study, folder);
   return edited(session, [&] {
     const std::string added = with_effect(text, effect_line(name, effect, roles, start));
-    return from ? with_held(added, session, with, from->held) : added;
+    return from ? with_fixed(added, session, with, from->fixed_in_model) : added;
   });
 }
 

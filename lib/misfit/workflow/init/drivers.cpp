@@ -34,7 +34,7 @@ void take_measured_inputs(RecordingSurvey& survey) {
   for (auto& c : survey.columns) {
     const bool input = c.use == ColumnUse::input, output = c.use == ColumnUse::output;
     if (input || output || c.use == ColumnUse::rate) (input ? all.inputs : all.outputs)[c.name] = longest->find(c.name)->values;
-    if (output && !c.chosen) outputs.push_back(&c);
+    if (output && !c.chosen_by_user) outputs.push_back(&c);
   }
   constexpr std::size_t most = 24;  // columns; with more of them the regressions say little
   if (outputs.size() < 2 || all.inputs.size() + all.outputs.size() > most) return;
@@ -49,7 +49,7 @@ void take_measured_inputs(RecordingSurvey& survey) {
     const auto helped = std::find_if(outputs.begin(), outputs.end(), moved);
     if (found[c->name].matters() || helped == outputs.end()) continue;
     c->use = ColumnUse::input;
-    c->measured = true;
+    c->is_measured_input = true;
     c->why = "nothing else in the file helps to predict it, unlike " + (*helped)->name;
   }
 }
