@@ -113,9 +113,9 @@ TEST(Recording, CommandsBehindAnotherWordAreInputsAndSmoothOnesAreSaidToBe) {
   }));
   EXPECT_NEAR(s.step, 0.004, 1e-9) << "microseconds";
   EXPECT_EQ(column(s, "roll_cmd").use, ColumnUse::input);
-  EXPECT_FALSE(column(s, "roll_cmd").measured);
+  EXPECT_FALSE(column(s, "roll_cmd").is_measured_input);
   EXPECT_EQ(column(s, "rudder").use, ColumnUse::input);
-  EXPECT_TRUE(column(s, "rudder").measured);
+  EXPECT_TRUE(column(s, "rudder").is_measured_input);
   EXPECT_EQ(column(s, "T_in").unit, "degC");
 }
 

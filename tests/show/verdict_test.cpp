@@ -102,7 +102,7 @@ TEST(Verdict, NothingMissingNamesTheRandomForceThatDrivesTheMotion) {
   EXPECT_THAT(v.sentence, Not(HasSubstr("random force")));
   c.discovery->candidates.pop_back();
   EXPECT_EQ(c.verdict().sentence, "No effect is found missing: the one that was tested is not needed.");
-  c.discovery->candidates.front().described = true;
+  c.discovery->candidates.front().absorbed = true;
   EXPECT_EQ(c.verdict().sentence, "No effect is found missing, but none of the library was tested.");
 }
 

@@ -333,10 +333,11 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
                                                             : "not verified";
   fit.warnings.insert(fit.warnings.end(), estimate.notes.begin(), estimate.notes.end());
   if (!estimate.nonlinear.empty()) fit.warnings.push_back(excluded_in_words(estimate.nonlinear));
-  if (estimate.outliers > 0)
+  if (estimate.outliers > 0) {
     fit.warnings.push_back(counted(static_cast<std::size_t>(estimate.outliers),
                                    "measurement more than 5 sigma from its prediction is rejected as an outlier",
                                    "measurements more than 5 sigma from their prediction are rejected as outliers"));
+  }
   const FilterData& first = estimate.data.front();
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
