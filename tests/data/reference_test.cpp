@@ -28,7 +28,7 @@ TEST(Reference, FoldsSignedAnglesByOddnessAndKeepsBothBranches) {
   EXPECT_DOUBLE_EQ(reference.value[1], 0.011);
   EXPECT_DOUBLE_EQ(reference.value[2], 0.010);
   ASSERT_EQ(reference.notes.size(), 1U);
-  expect_parts(reference.notes[0], {"1 points", "alpha", "odd"});
+  expect_parts(reference.notes[0], {"1 point", "alpha", "odd"});
 }
 
 TEST(Reference, ADampingCurveIsEven) {

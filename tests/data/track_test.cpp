@@ -53,7 +53,7 @@ TEST_F(TrackFile, PositionsBeyondAnyImageAreLostAndSaid) {
   const Track track = read("t[s],P_y[px],P_z[px]\n0,1,2\n1,-999999,4\n2,1e5,6\n");
   EXPECT_EQ(track.ok, (std::vector<bool>{true, false, true}));
   ASSERT_EQ(track.notes.size(), 2U);
-  expect_parts(track.notes[0], {"1 samples more than 100000 px"});
+  expect_parts(track.notes[0], {"1 sample more than 100000 px"});
 }
 
 TEST_F(TrackFile, TimeThatDoesNotIncreaseNamesLineAndBothTimes) {
