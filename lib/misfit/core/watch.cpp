@@ -18,7 +18,7 @@ constinit thread_local unsigned looks = 0;
 std::atomic<bool>& interrupted() { return flag; }
 
 Interrupted::Interrupted()
-    : Stopped("interrupted; finished work is kept in the run folder: give the same command again to continue from there") {}
+    : Stopped("interrupted; finished work is kept in the run folder, and the same command continues from there") {}
 
 namespace {
 
