@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
@@ -151,7 +152,7 @@ std::string json_numbers(const std::vector<double>& values, int digits) {
 
 std::string json_places(const std::vector<double>& x) {
   constexpr int of_span = 9, most = 17;  // significant digits; 17 give a number as it is
-  double least = INFINITY, largest = -INFINITY;
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (const double value : x) {
     if (std::isfinite(value)) least = std::min(least, value), largest = std::max(largest, value);
   }

@@ -74,7 +74,8 @@ Series& series_for(Panel& panel, const SeriesLook& look) {
 
 void add_force(const Rung& rung, const std::map<std::string, std::string>& names, std::vector<Panel>& panels) {
   for (const auto& [port, e] : force_strengths(rung.force)) {
-    const std::string unit = display_unit(e.unit), name = names.at(e.unit);
+    const std::string unit = display_unit(e.unit);
+    const std::string& name = names.at(e.unit);
     const double factor = convert(1.0, e.unit, unit);
     const std::string key = names.size() == 1 ? "force" : as_key(name);
     Series& series = series_for(panel_for(panels, name, unit), {key, "remaining " + name + ", ± 1 sigma", Style::error_bars, palette(1)});

@@ -21,7 +21,7 @@ bool is_dots(Style style) { return style == Style::points || style == Style::mar
 /// Which of `places` places of an axis; what is beyond an end belongs to that end.
 std::size_t place_on(const std::array<double, 2>& axis, std::size_t places, double value) {
   const double part = axis[1] > axis[0] ? (value - axis[0]) / (axis[1] - axis[0]) : 0.0;
-  return static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * static_cast<double>(places - 1) + 0.5);
+  return static_cast<std::size_t>(std::lround(std::clamp(part, 0.0, 1.0) * static_cast<double>(places - 1)));
 }
 
 /// The first dot at each place of the finest grid of which no more than `most_dots` places are taken.

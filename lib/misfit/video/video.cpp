@@ -185,10 +185,11 @@ std::vector<std::string> notes_of(const VideoFacts& facts) {
                     facts.file, facts.declared, static_cast<double>(facts.declared) / facts.rate, facts.decoded,
                     static_cast<double>(reached) / facts.rate));
   }
-  if (facts.missing > 0)
+  if (facts.missing > 0) {
     notes.push_back(fmt::format("{}: {} missing between others, as its timestamps show: {} lost", facts.file,
                                 counted(facts.missing, "frame is", "frames are"),
                                 facts.missing == 1 ? "its sample is" : "their samples are"));
+  }
   if (facts.variable) {
     notes.push_back(
         fmt::format("{}: its frames do not follow each other at a constant rate: every sample has the time that the file gives "

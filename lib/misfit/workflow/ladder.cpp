@@ -347,7 +347,7 @@ std::vector<fs::path> ModelLadder::remove(const std::string& asked) {
   return kept;
 }
 
-std::optional<fs::path> ModelLadder::kept_aside(const Rung& rung) {
+std::optional<fs::path> ModelLadder::kept_aside(const Rung& rung) const {
   const fs::path folder = root_.folder.file(rung.study).parent_path().lexically_normal();
   if (!rung.study.starts_with("rungs/") || !fs::exists(folder)) return std::nullopt;
   fs::path to = folder.parent_path() / ("removed_" + folder.filename().string());

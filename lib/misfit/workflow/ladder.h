@@ -63,7 +63,7 @@ class ModelLadder {
   void append(Rung rung);
   void store();
   /// Renames the folder of a rung; nullopt: it has none of its own. WriteError.
-  [[nodiscard]] std::optional<std::filesystem::path> kept_aside(const Rung& rung);
+  [[nodiscard]] std::optional<std::filesystem::path> kept_aside(const Rung& rung) const;
 
   SessionOptions options_;
   const Registry& registry_;
