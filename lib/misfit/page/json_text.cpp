@@ -7,8 +7,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "misfit/core/enum_name.h"
