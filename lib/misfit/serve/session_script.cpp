@@ -42,9 +42,9 @@ std::string command_of(const std::vector<std::string>& words) {
   return out;
 }
 
-void SessionScript::record_text(const std::string& study, const std::string& text) const {
+void SessionScript::record_text(const Opened& opened, const std::string& study, const std::string& text) const {
   const std::string mark = end_mark(text);
-  append("cat > " + shell_word(study) + " <<'" + mark + "'\n" + text + (text.ends_with('\n') ? "" : "\n") + mark + "\n");
+  append(opened, "cat > " + shell_word(study) + " <<'" + mark + "'\n" + text + (text.ends_with('\n') ? "" : "\n") + mark + "\n");
 }
 
 void SessionScript::record_end(const std::string& command, int status, bool stopped) const {
@@ -60,15 +60,22 @@ std::string SessionScript::text() const {
   return fs::symlink_status(path_, none).type() == fs::file_type::regular ? read_file(path_) : "";
 }
 
-void SessionScript::append(const std::string& lines) const {
-  make_writable_folder(path_.parent_path());
-  const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
-  if (file < 0) throw WriteError(path_.string() + ": cannot be written: " + std::strerror(errno));
-  const std::string all = (::lseek(file, 0, SEEK_END) == 0 ? head : "") + way_there(text()) + lines;
-  const bool whole = ::write(file, all.data(), all.size()) == static_cast<ssize_t>(all.size());
-  const int error = errno;
-  ::close(file);
-  if (!whole) throw WriteError(path_.string() + ": cannot be written: " + std::strerror(error));
+void SessionScript::append(const Opened& opened, const std::string& lines) const {
+  const std::string before = text();
+  opened.append((before.empty() ? head : "") + way_there(before) + lines);
+}
+
+SessionScript::Opened::Opened(const fs::path& path) : path_(path) {
+  make_writable_folder(path.parent_path());
+  file_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
+  if (file_ < 0) throw WriteError(path.string() + ": cannot be written: " + std::strerror(errno));
+}
+
+SessionScript::Opened::~Opened() { ::close(file_); }
+
+void SessionScript::Opened::append(const std::string& lines) const {
+  if (::write(file_, lines.data(), lines.size()) != static_cast<ssize_t>(lines.size()))
+    throw WriteError(path_.string() + ": cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace misfit::serve
