@@ -232,6 +232,11 @@ def force_of_the_accepted(page, name):
     page.click("#candidates tr.accepted button.shows")
     ActionChains(page.driver).move_to_element(page.one("h1")).perform()
     page.wait(lambda: words in page.text("#force") and name in page.text("#force .legend"), "kept")
+    choose = "const m = document.querySelector('#method'); m.selectedIndex = arguments[0]; m.dispatchEvent(new Event('change'))"
+    page.js(choose, 0)
+    page.wait(lambda: page.js("return document.querySelector('#motion .plot').ariaLabel").find("filter_error") < 0, "the motion by another method")
+    assert words in page.text("#force"), "it stays beside the motion by another method"
+    page.js(choose, page.js("return document.querySelector('#method').options.length") - 1)
     page.view("ladder")
     page.wait(lambda: words not in page.text("#force"), "gone with the view")
     page.view("candidates")
@@ -487,6 +492,10 @@ def report_without_server(page, verdict):
     assert page.one("body > main").is_displayed() and not page.one("#page").is_displayed()
     page.click("button.explore")
     assert page.one("#page").is_displayed() and not page.one("body > main").is_displayed()
+    page.driver.get("about:blank")
+    page.open("file://" + os.path.join(FOLDER, "out", "report.html#section-3"))
+    assert page.one("#section-3").is_displayed() and not page.one("#page").is_displayed(), "a section that is asked for is seen"
+    assert page.js("return location.hash") == "#section-3", "and stays in the address"
 
 
 def marks_do_not_go_with_another_recording(page):
@@ -646,20 +655,22 @@ def cells_and_figures_are_as_they_should(page):
           const drawn = new figure.Figure(document.body, drawing([0, 1, 2], series([0, 1, 0], 'line')));
           drawn.overlay = [{ ...series([0, 9, null], 'line'), x: [0, 1, 2], sorted: true }];
           drawn.redrawOver();
+          const scales = new Map(), [large, small] = [8, 1].map((top) => new figure.Figure(document.body, drawing([0, 1], series([0, top], 'line')), { scales }));
           const gap = drawing([0, 1, 2, 9], series([5, 6, null, 8], 'points'));
           setTimeout(() => {
             const { max } = drawn.plots[0].u.scales.y;
-            drawn.destroy();
-            done([byCell.at(0), byCell.at(1).intervals, cells.rangeOf([0, 1, 2], 1), cells.rangeOf([0, 1, 2], 2) ?? null, max >= 9,
+            const kept = small.plots[0].u.scales.y.max;
+            for (const one of [drawn, large, small]) one.destroy();
+            done([byCell.at(0), byCell.at(1).intervals, cells.rangeOf([0, 1, 2], 1), cells.rangeOf([0, 1, 2], 2) ?? null, max >= 9, kept >= 8,
                 [1.2, 2, 5, 9.5].map((at) => figure.valueAt(gap, 'measured', at) ?? null),
                 [dom.shownWithSigma(1234567, 2), dom.shownWithSigma(-12345678, 12345), dom.shownPlace(101325.7, 100, 4), dom.shown(-1.5e-7, 2)]]);
           }, 100);
         })""")
     assert said[0] == {"times": [0, 1, 3, 100, 104], "intervals": [[-0.5, 1.5], [2.5, 100.5], [102.5, 105.5]]}, said[0]
     assert said[1] == [[1.5, 2.5], [100.5, 102.5]], "no sample between is marked"
-    assert said[2:5] == [1, None, True], "a value at an edge is in the range above; a curve over the others is seen whole"
-    assert said[5] == [6, None, None, 8], "no marker of another time"
-    assert said[6] == ["1234567.0 ± 2.0", "−1.2346e+7 ± 12000", "101325.7", "−1.5e−7"], said[6]
+    assert said[2:6] == [1, None, True, True], "a value at an edge is in the range above; a curve over the others is seen whole; one scale is kept"
+    assert said[6] == [6, None, None, 8], "no marker of another time"
+    assert said[7] == ["1234567.0 ± 2.0", "−1.2346e+7 ± 12000", "101325.7", "−1.5e−7"], said[7]
 
 
 def numbers_far_from_zero_are_told_apart(page):
@@ -806,9 +817,10 @@ def timing():
     server = Server()
     page = Page(server.address)
     print(f"ready after {page.js('return performance.now()') / 1000:.2f} s (at most: asked for ten times a second)")
+    # Every move leads far away: of a map into another cell.
     moves = """const [host, type, n] = arguments, box = host.getBoundingClientRect(), took = [];
         for (let k = 0; k < n; ++k) {
-          const x = box.left + box.width * (k + 0.5) / n, y = box.top + box.height * (0.5 + 0.3 * Math.sin(k));
+          const x = box.left + box.width * ((k * 61) % n + 0.5) / n, y = box.top + box.height * (0.5 + 0.3 * Math.sin(k));
           const begin = performance.now();
           if (type === 'input') { host.value = Number(host.max) * k / n; host.dispatchEvent(new Event('input')); }
           else host.dispatchEvent(new MouseEvent('mousemove', { clientX: x, clientY: y, bubbles: true, view: window }));
