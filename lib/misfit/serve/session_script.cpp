@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -48,11 +50,13 @@ void SessionScript::record_text(const Opened& opened, const std::string& study, 
 }
 
 void SessionScript::record_end(const std::string& command, int status, bool stopped) const {
+  const Opened opened = open();  // nobody adds a line meanwhile
   std::string lines = text();
-  if (!lines.ends_with("\n" + command + "\n")) return;
+  const std::size_t before = lines.rfind("\n" + command + "\n");
+  if (before == std::string::npos) return;
   std::string instead = "# stopped: " + command;
   if (!stopped) instead = status == 1 ? command + " || [ $? -eq 1 ]" : fmt::format("# ended with status {}: {}", status, command);
-  write_atomically(path_, lines.replace(lines.size() - command.size() - 1, command.size(), instead));
+  write_atomically(path_, lines.replace(before + 1, command.size(), instead));
 }
 
 std::string SessionScript::text() const {
@@ -67,8 +71,19 @@ void SessionScript::append(const Opened& opened, const std::string& lines) const
 
 SessionScript::Opened::Opened(const fs::path& path) : path_(path) {
   make_writable_folder(path.parent_path());
-  file_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
-  if (file_ < 0) throw WriteError(path.string() + ": cannot be written: " + std::strerror(errno));
+  do {
+    if (file_ >= 0) ::close(file_);
+    file_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
+    if (file_ < 0) throw WriteError(path.string() + ": cannot be written: " + std::strerror(errno));
+    ::flock(file_, LOCK_EX);
+  } while (!is_there());
+}
+
+/// False: another process has put a new file in its place before this one could be locked.
+bool SessionScript::Opened::is_there() const {
+  struct stat own {
+  }, there{};
+  return ::fstat(file_, &own) == 0 && ::stat(path_.c_str(), &there) == 0 && own.st_ino == there.st_ino && own.st_dev == there.st_dev;
 }
 
 SessionScript::Opened::~Opened() { ::close(file_); }
