@@ -84,6 +84,7 @@ async function watch() {
     let running = false;
     try {
       running = await look();
+      if (document.body.dataset.lost) await showAll(); // what was asked for meanwhile
       unhindered();
     } catch (error) {
       hindered(error);
@@ -1012,17 +1013,21 @@ let refreshing = null, again = false;
 /** Once at a time: who is at it does it again. */
 function showAll() {
   again = true;
-  return (refreshing ??= refresh().finally(() => { refreshing = null; }));
+  return (refreshing ??= refresh());
 }
 async function refresh() {
-  while (again) {
-    again = false;
-    const mine = ++motionTurn, [where, motion] = await Promise.all([kept('where', { model: here.model }), askForMotion()]);
-    if (again) continue;
-    here.where = where;
-    takeMotion(mine === motionTurn ? motion : here.motion);
-    offerWithMarks();
-    await refreshView();
+  try {
+    while (again) {
+      again = false;
+      const mine = ++motionTurn, [where, motion] = await Promise.all([kept('where', { model: here.model }), askForMotion()]);
+      if (again) continue;
+      here.where = where;
+      takeMotion(mine === motionTurn ? motion : here.motion);
+      offerWithMarks();
+      await refreshView();
+    }
+  } finally {
+    refreshing = null;
   }
 }
 
