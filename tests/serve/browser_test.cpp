@@ -49,6 +49,11 @@ TEST_F(InABrowser, AParameterIsHeldAndAMarkedTimeHeldOut) {
   expect_good(study.path(""), "settings");
 }
 
+TEST_F(InABrowser, TwoPagesShowTheSameAndLeaveEachOtherWhatIsInHand) {
+  const OscillatorStudy study;
+  expect_good(study.path(""), "two_pages");
+}
+
 TEST_F(InABrowser, ACommandIsStoppedAndAKilledServerOpenedAgain) {
   const OscillatorStudy study;
   expect_good(study.path(""), "stop_and_kill");

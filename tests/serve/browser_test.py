@@ -45,15 +45,20 @@ class Server:
 class Page:
     """The page, as somebody sees it who has eyes, a mouse and keys."""
 
-    def __init__(self, address):
+    def __init__(self, address, scripts=True):
         options = Options()
         for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu", "--window-size=1280,1000",
                          "--user-data-dir=" + tempfile.mkdtemp(dir=FOLDER)):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        if not scripts:
+            options.add_experimental_option("prefs", {"profile.managed_default_content_settings.javascript": 2})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
         atexit.register(self.quit)
-        self.open(address)
+        if scripts:
+            self.open(address)
+        else:
+            self.driver.get(address)
 
     def quit(self):
         try:
@@ -168,6 +173,53 @@ def point_at_the_worst_place(page):
     return fixed
 
 
+def keys_in_a_pair_map(page):
+    """Every cell is reached, across and upwards, without a mouse; keys that are the browser's stay its own."""
+    pair = page.js("return [...document.querySelectorAll('[data-map]')].find((b) => b.textContent.includes(' and '))")
+    pair.send_keys(Keys.ENTER)
+    plot = page.wait(lambda: page.one("#view figure[data-figure*=_and_] .plot"), "a map over two quantities")
+    while page.js("return document.activeElement !== arguments[0]", plot):
+        page.driver.switch_to.active_element.send_keys(Keys.TAB)
+
+    def ranges(key):
+        plot.send_keys(key)
+        found = re.findall(r"from (\S+) to (\S+)", page.text("#marked"))
+        assert len(found) == 2, page.text("#marked")
+        return found
+    across = [ranges(Keys.ARROW_RIGHT) for _ in range(3)]
+    assert len({x for x, _ in across}) == 3, across
+    x, y = ranges(Keys.ARROW_DOWN)
+    rows = [ranges(key) for key in (Keys.ARROW_UP, Keys.ARROW_UP, Keys.ARROW_DOWN)]
+    assert {row[0] for row in rows} == {x} and len({row[1] for row in rows} | {y}) >= 2, rows
+    assert ranges(Keys.ENTER) == rows[-1], "Enter keeps the cell of the cursor, not the first of its column"
+    assert int(page.one("#time").get_attribute("data-marks")) > 0
+    taken = """return ['+', '-', '0', 'ArrowLeft'].map((key) => !arguments[0].dispatchEvent(
+        new KeyboardEvent('keydown', {key, ctrlKey: key !== 'ArrowLeft', altKey: key === 'ArrowLeft', bubbles: true, cancelable: true})))"""
+    assert page.js(taken, plot) == [False] * 4, "with Ctrl or Alt they are the browser's"
+    page.one("#effect").send_keys(Keys.ESCAPE)
+    assert page.text("#marked") != "", "Escape in a list closes the list"
+    plot.send_keys(Keys.ESCAPE)
+    page.wait(lambda: page.text("#marked") == "", "no marks after Escape")
+
+
+def what_is_in_hand_stays(page):
+    """What is typed, while the study changes under it; the rest of the view when it is asked for."""
+    text = read(STUDY)
+    page.click("#settings summary")
+    box = page.wait(lambda: page.one("[data-box]"), "the box of a roughness")
+    box.send_keys("7")
+    typed = box.get_attribute("value")
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(text + "no_key = 1\n")
+    page.wait(lambda: page.one("#newer").is_displayed(), "something newer can be shown")
+    assert box.get_attribute("value") == typed and page.one("#settings").get_attribute("open"), "what is typed stays"
+    page.click("#newer button")
+    page.wait(lambda: not page.driver.find_elements(By.CSS_SELECTOR, "[data-box]"), "it is shown: a study with an error has no settings")
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(text)
+    page.wait(lambda: page.one("[data-box]").is_displayed() and page.one("#settings").get_attribute("open"), "unfolded as before")
+
+
 def force_of_the_accepted(page, name):
     """Pointing shows the force that it adds, its button keeps it, another view removes it."""
     words = f"what {name} adds"
@@ -223,13 +275,20 @@ def remove_asks_first(page):
     page.click("button.removes")
     page.wait(lambda: "Take this rung off the ladder?" in page.text(".asking"), "the question")
     assert focused(page) == "Keep", focused(page)
-    os.utime(os.path.join(FOLDER, "out", "run.json"))  # what is shown has changed
-    time.sleep(5)
+    text = read(STUDY)
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(text + "no_key = 1\n")
+    page.wait(lambda: page.one("#newer").is_displayed(), "what is shown has changed")
     assert focused(page) == "Keep", "the view is not drawn anew under somebody who is asked"
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(text)
+    page.wait(lambda: not page.one("#newer").is_displayed(), "it is as before")
     page.js("document.querySelector('#view > div').dataset.seen = 'before'")
+    os.utime(os.path.join(FOLDER, "out", "run.json"))
     press(page, Keys.ESCAPE)
-    page.wait(lambda: page.js("return document.querySelector('#view > div').dataset.seen !== 'before'"), "but then")
     page.wait(lambda: focused(page) == "Remove this rung", "back at the button")
+    time.sleep(4)
+    assert page.js("return document.querySelector('#view > div').dataset.seen") == "before", "where nothing has changed the view stays"
     press(page, Keys.ENTER)
     page.wait(lambda: focused(page) == "Keep", "asked by a key")
     press(page, Keys.ENTER)
@@ -316,7 +375,7 @@ def find_and_add():
     page = Page(server.address)
     assert "There are no results yet" in page.text("#alerts")
     page.click("#run")
-    page.wait(lambda: page.one("#job progress, #job .costs figure"), "progress or cost of the fit")
+    page.wait(lambda: page.one("#job progress:not([hidden]), #job .costs figure"), "progress or cost of the fit")
     page.job("done", 1)
     assert page.text("#command").startswith("misfit run ")
     page.wait(lambda: "Missing:" in page.text("#verdict"), "the verdict")
@@ -341,7 +400,9 @@ def find_and_add():
         assert page.js(places) == before, "the readout moves no plot"
     plot.send_keys(Keys.ESCAPE)
     page.wait(lambda: page.text("#marked") == "", "no marks after Escape")
+    keys_in_a_pair_map(page)
     move_the_roughness(page)
+    what_is_in_hand_stays(page)
     page.view("candidates")
     first = page.wait(lambda: page.one("#candidates tr.accepted button.adds"), "an accepted candidate").get_attribute("data-effect")
     force_of_the_accepted(page, first)
@@ -381,6 +442,17 @@ def find_and_add():
     leave_the_server(page, server)
     report_without_server(page, verdict)
     page.end()
+    report_without_scripts()
+
+
+def report_without_scripts():
+    """It is a document, whose figures are seen."""
+    page = Page("file://" + os.path.join(FOLDER, "out", "report.html"), scripts=False)
+    drawings = page.driver.find_elements(By.CSS_SELECTOR, "body > main .drawing")
+    assert len(drawings) > 3, len(drawings)
+    assert all(one.is_displayed() and one.size["width"] > 100 and one.size["height"] > 50 for one in drawings)
+    assert not page.driver.find_elements(By.CSS_SELECTOR, "#page"), "no script was run"
+    page.end()
 
 
 def report_without_server(page, verdict):
@@ -415,6 +487,10 @@ def report_without_server(page, verdict):
     assert page.one("body > main").is_displayed() and not page.one("#page").is_displayed()
     page.click("button.explore")
     assert page.one("#page").is_displayed() and not page.one("body > main").is_displayed()
+    page.driver.get("about:blank")
+    page.open("file://" + os.path.join(FOLDER, "out", "report.html#section-3"))
+    assert page.one("#section-3").is_displayed() and not page.one("#page").is_displayed(), "a section that is asked for is seen"
+    assert page.js("return location.hash") == "#section-3", "and stays in the address"
 
 
 def marks_do_not_go_with_another_recording(page):
@@ -498,8 +574,108 @@ def film():
         const [r, g, b] = canvas.getContext('2d').getImageData(x, y, 1, 1).data;
         return b - g""", int(x), int(y))
     assert blue > 40, f"the bob is blue and violet, the wall brown: {blue}"
+    marked_samples_in_the_film(page)
     page.end()
     server.end()
+
+
+def two_pages():
+    """The same study in two pages: both show what one of them does, and neither takes from the other what is in hand."""
+    server = Server()
+    page, other = Page(server.address), Page(server.address)
+    page.click("#run")
+    for one in (page, other):
+        one.job("done", 1)
+    for selector in ("#verdict", "#view", "#command"):
+        other.wait(lambda: other.text(selector) == page.text(selector) != "", f"the same in {selector}")
+    # In hand: marks, a zoom of time and of a map, what is unfolded.
+    plot = other.one("#motion .plot")
+    plot.send_keys(Keys.ARROW_RIGHT, "+", "m")
+    plot.send_keys(Keys.SHIFT + Keys.ARROW_RIGHT, "m")
+    other.wait(lambda: other.text("#marked").startswith("Marked: "), "a marked time")
+    other.wait(lambda: other.one("#view figure .plot"), "a map").send_keys(Keys.ARROW_RIGHT, "+")
+    other.wait(lambda: other.text("#marked").startswith("Marked: "), "a marked cell")
+    other.js("[...document.querySelectorAll('#view summary')].at(-1).click()")
+    in_hand = """return [document.querySelector('#marked').textContent, document.querySelector('#time').dataset.window,
+        document.querySelector('#view figure').dataset.window, document.querySelector('#view details').open]"""
+    before = other.js(in_hand)
+    assert all(before), before
+    other.js("document.querySelector('#view > div').dataset.seen = 'before'; document.querySelector('#run').focus()")
+    subprocess.run([PROGRAM, "set", STUDY, "parameters.k.free=false"], check=True)
+    page.click("#run")
+    other.job("running", 2)
+    other.wait(lambda: other.js("return document.activeElement.id") == "job", "the focus is not on Stop: this page has begun nothing")
+    other.driver.switch_to.active_element.send_keys(Keys.ENTER)
+    said = other.wait(lambda: other.js("return document.querySelector('#job details summary:not([hidden])')"), "what it says")
+    other.js("arguments[0].focus()", said)
+    for one in (page, other):
+        one.job("done", 2)
+    assert other.js("return document.activeElement === arguments[0]", said), "the box of the command is the same all the time"
+    other.wait(lambda: other.js("return document.querySelector('#view > div').dataset.seen !== 'before'"), "its new results are seen")
+    other.wait(lambda: other.js(in_hand) == before, "and what was in hand is still there")
+    other.wait(lambda: other.text("#verdict") == page.text("#verdict") and not other.text("#alerts"), "the same again")
+    kept_force_stays_with_another_method(page)
+    page.end()
+    other.end()
+    server.end()
+
+
+def kept_force_stays_with_another_method(page):
+    page.view("candidates")
+    page.click("#candidates tr.accepted button.shows")
+    page.wait(lambda: "adds" in page.text("#force h3"), "the force of a candidate")
+    page.js("const m = document.querySelector('#method'); m.value = 'output_error'; m.dispatchEvent(new Event('change'))")
+    page.wait(lambda: "output_error" in page.one("#motion .plot").get_attribute("aria-label"), "the motion by another method")
+    assert "adds" in page.text("#force h3"), page.text("#force")
+
+
+def marked_samples_in_the_film(page):
+    """Pointing at a place of a map shows the frame of one of its samples, and says so; the cursor leads back."""
+    badge = lambda: page.one("#frame-badge").is_displayed()
+    frame = lambda: page.text("#frame-words")
+    page.click("#run")
+    page.job("done", 2)
+    ActionChains(page.driver).move_to_element(page.one("h1")).perform()
+    plot = page.wait(lambda: page.one("#view figure .plot"), "a map")
+    assert not badge()
+    at_the_cursor, seen = page.still(frame, "the frame"), set()
+    for _ in range(4):
+        plot.send_keys(Keys.ARROW_RIGHT)
+        page.wait(badge, "the frame is of a marked sample")
+        seen.add(page.still(frame, "the frame"))
+    assert len(seen) > 1, seen
+    page.one("#motion .plot").send_keys(Keys.ESCAPE)
+    page.wait(lambda: not badge(), "nothing is marked")
+    page.wait(lambda: frame() == at_the_cursor, "the frame at the cursor again")
+
+
+def cells_and_figures_are_as_they_should(page):
+    """Parts of the page, each by itself."""
+    said = page.driver.execute_async_script("""const done = arguments[0];
+        Promise.all(['/cells.js', '/figure.js', '/dom.js'].map((name) => import(name))).then(([cells, figure, dom]) => {
+          const t = [0, 1, 2, 3, 100, 101, 104], byCell = new cells.SamplesByCell(t, (i) => [0, 0, 1, 0, 0, 1, 0][i]);
+          const series = (y, style) => ({ key: 'measured', legend: '', style, colour: '#000000', width: 1, x: 0, y, lo: [], hi: [], z: [] });
+          const drawing = (x, ...all) => ({ name: 'a', title: '', caption: '', notes: [], xLabel: '', xUnit: '', xMarks: [], xs: [x],
+              panels: [{ label: '', unit: '', height: 200, zero: false, marks: [], series: all }] });
+          const drawn = new figure.Figure(document.body, drawing([0, 1, 2], series([0, 1, 0], 'line')));
+          drawn.overlay = [{ ...series([0, 9, null], 'line'), x: [0, 1, 2], sorted: true }];
+          drawn.redrawOver();
+          const scales = new Map(), [large, small] = [8, 1].map((top) => new figure.Figure(document.body, drawing([0, 1], series([0, top], 'line')), { scales }));
+          const gap = drawing([0, 1, 2, 9], series([5, 6, null, 8], 'points'));
+          setTimeout(() => {
+            const { max } = drawn.plots[0].u.scales.y;
+            const kept = small.plots[0].u.scales.y.max;
+            for (const one of [drawn, large, small]) one.destroy();
+            done([byCell.at(0), byCell.at(1).intervals, cells.rangeOf([0, 1, 2], 1), cells.rangeOf([0, 1, 2], 2) ?? null, max >= 9, kept >= 8,
+                [1.2, 2, 5, 9.5].map((at) => figure.valueAt(gap, 'measured', at) ?? null),
+                [dom.shownWithSigma(1234567, 2), dom.shownWithSigma(-12345678, 12345), dom.shownPlace(101325.7, 100, 4), dom.shown(-1.5e-7, 2)]]);
+          }, 100);
+        })""")
+    assert said[0] == {"times": [0, 1, 3, 100, 104], "intervals": [[-0.5, 1.5], [2.5, 100.5], [102.5, 105.5]]}, said[0]
+    assert said[1] == [[1.5, 2.5], [100.5, 102.5]], "no sample between is marked"
+    assert said[2:6] == [1, None, True, True], "a value at an edge is in the range above; a curve over the others is seen whole; one scale is kept"
+    assert said[6] == [6, None, None, 8], "no marker of another time"
+    assert said[7] == ["1234567.0 ± 2.0", "−1.2346e+7 ± 12000", "101325.7", "−1.5e−7"], said[7]
 
 
 def numbers_far_from_zero_are_told_apart(page):
@@ -519,6 +695,7 @@ def mend():
     page.wait(lambda: "The study has an error" in page.text("#alerts"), "the error")
     assert not page.one("#run").is_enabled()
     numbers_far_from_zero_are_told_apart(page)
+    cells_and_figures_are_as_they_should(page)
     page.click("#fault button")
     area = page.wait(lambda: page.one("#view textarea"), "the text")
     assert [bad.text for bad in page.driver.find_elements(By.CSS_SELECTOR, ".editor pre .bad")] == ["5", "16"], "every fault, at its line"
@@ -541,8 +718,47 @@ def mend():
     page.wait(lambda: "Saved" in page.text("#check"), "saved")
     assert read(STUDY) == good + "# more\n"
     page.wait(lambda: page.one("#run").is_enabled(), "it can be run")
+    somebody_else_saves(page)
+    an_answer_is_lost(page)
     page.end()
     server.end()
+
+
+def type_in(page, text):
+    page.js("const a = document.querySelector('#view textarea'); a.value += arguments[0]; a.dispatchEvent(new Event('input'))", text)
+
+
+def somebody_else_saves(page):
+    """While something is typed: it is not called fine, and Undo leads to what was saved."""
+    type_in(page, "# mine\n")
+    page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked")
+    theirs = read(STUDY) + "# theirs\n"
+    with open(STUDY, "w", encoding="utf-8") as file:
+        file.write(theirs)
+    page.wait(lambda: "changed by somebody else" in page.text("#check"), "it is said")
+    type_in(page, "# more of mine\n")
+    time.sleep(1)
+    assert "changed by somebody else" in page.text("#check") and not page.one("#save").is_enabled(), page.text("#check")
+    page.js("[...document.querySelectorAll('#view .buttons button')].find((b) => b.textContent === 'Undo all').click()")
+    page.wait(lambda: page.one("#view textarea").get_attribute("value") == theirs, "the text of the file")
+    page.wait(lambda: page.text("#check") == "Nothing is wrong with it.", "nothing is typed any more")
+
+
+def an_answer_is_lost(page):
+    """It is said as long as nobody answers; then the page goes on as it was, with what is typed. A fault of the page is no silence of misfit."""
+    type_in(page, "# mine\n")
+    alerts = page.text("#alerts")
+    page.js("document.body.dataset.same = 'yes'; window.before = window.fetch; window.fetch = () => Promise.reject(new TypeError('no net'))")
+    page.wait(lambda: "does not answer any more" in page.text("#alerts"), "nobody answers")
+    page.js("window.fetch = async () => ({ ok: true, text: async () => '{}' })")
+    page.wait(lambda: "Cannot read" in page.text("#alerts"), "an answer that the page cannot take")
+    assert "does not answer" not in page.text("#alerts")
+    page.js("window.fetch = window.before")
+    page.wait(lambda: page.text("#alerts") == alerts, "all is well again")
+    time.sleep(2)
+    assert page.js("return document.body.dataset.same") == "yes", "it is not loaded again"
+    assert page.one("#view textarea").get_attribute("value").endswith("# mine\n")
+    page.js("[...document.querySelectorAll('#view .buttons button')].find((b) => b.textContent === 'Undo all').click()")
 
 
 def stop_and_kill():
@@ -601,4 +817,50 @@ def hostile():
     page.end()
 
 
-{"find_and_add": find_and_add, "mend": mend, "film": film, "settings": settings, "stop_and_kill": stop_and_kill, "hostile": hostile}[sys.argv[3]]()
+def timing():
+    """How long what is felt at once takes, as a table: no test. By hand, on any study that has been run: PROGRAM STUDY_FOLDER timing."""
+    server = Server()
+    page = Page(server.address)
+    print(f"ready after {page.js('return performance.now()') / 1000:.2f} s (at most: asked for ten times a second)")
+    # Every move leads far away: of a map into another cell.
+    moves = """const [host, type, n] = arguments, box = host.getBoundingClientRect(), took = [];
+        for (let k = 0; k < n; ++k) {
+          const x = box.left + box.width * ((k * 61) % n + 0.5) / n, y = box.top + box.height * (0.5 + 0.3 * Math.sin(k));
+          const begin = performance.now();
+          if (type === 'input') { host.value = Number(host.max) * k / n; host.dispatchEvent(new Event('input')); }
+          else host.dispatchEvent(new MouseEvent('mousemove', { clientX: x, clientY: y, bubbles: true, view: window }));
+          host.getBoundingClientRect();
+          await new Promise((go) => queueMicrotask(go));
+          took.push(performance.now() - begin);
+          if (k % 5 === 0) await new Promise(requestAnimationFrame);
+        }
+        took.sort((a, b) => a - b);
+        return [took[n >> 1], took[Math.floor(0.95 * n)], took[n - 1]]"""
+
+    def measure(what, selector, event="mousemove"):
+        found = page.driver.find_elements(By.CSS_SELECTOR, selector)
+        if not found:
+            return print(f"{what}: there is none")
+        page.js("arguments[0].scrollIntoView({block: 'center'})", found[0])
+        page.js("arguments[0].dispatchEvent(new MouseEvent('mouseenter', {view: window}))", found[0])
+        half, most, longest = page.js(f"return (async function () {{ {moves} }})(...arguments)", found[0], event, 200)
+        print(f"{what}: half within {half:.1f} ms, 95 % within {most:.1f} ms, all within {longest:.1f} ms")
+    measure("cursor over the motion", "#motion .u-over")
+    page.view("where")
+    page.wait(lambda: page.one("#view figure .u-over"), "a map", 60)
+    time.sleep(2)
+    measure("over a map", "#view figure .u-over")
+    pair = page.js("return [...document.querySelectorAll('[data-map]')].find((b) => b.textContent.includes(' and '))")
+    if pair:
+        page.js("arguments[0].click()", pair)
+        time.sleep(2)
+        measure("over a map of two quantities", "#view figure[data-figure*=_and_] .u-over")
+    page.view("curves")
+    time.sleep(1)
+    measure("the slider of a roughness", ".slider input", "input")
+    print(f"JavaScript holds {page.js('return performance.memory.usedJSHeapSize') / 1e6:.0f} MB")
+    page.end()
+    server.end()
+
+
+{"timing": timing, "two_pages": two_pages, "find_and_add": find_and_add, "mend": mend, "film": film, "settings": settings, "stop_and_kill": stop_and_kill, "hostile": hostile}[sys.argv[3]]()

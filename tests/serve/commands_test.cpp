@@ -34,8 +34,13 @@ TEST(CommandsOfThePage, AreWhatOneWouldTypeAndGiveTheSameBytesWhenDoneAgain) {
   json job = server.job();
   ASSERT_EQ(job["state"], "done") << job["notes"] << job["output"];
   EXPECT_FALSE(job["costs"].empty()) << "its searches are followed";
+  EXPECT_LE(job["costs"].size(), 4U);
   std::size_t iterations = 0;
-  for (const json& trace : job["costs"]) iterations += trace["points"].size();
+  std::set<std::pair<std::string, std::string>> searches;
+  for (const json& trace : job["costs"]) {
+    iterations += trace["points"].size();
+    EXPECT_TRUE(searches.emplace(trace["work"], trace["what"]).second) << "one line for a search, though others run beside it";
+  }
   EXPECT_GT(iterations, 2U);
   EXPECT_THAT(job["output"], HasSubstr("Verdict"));
   EXPECT_NE(server.state()["verdict"], nullptr);
@@ -106,11 +111,15 @@ TEST(CommandsOfThePage, AreNotWrittenThroughLinks) {
   fs::create_symlink(study.path("elsewhere"), study.path("out/session.sh"));
   const PageServer server({study.path("study.toml").string()});
   const json shown = server.get("/api/study").parsed();
-  fs::rename(study.path("study.toml"), study.path("real.toml"));
-  fs::create_symlink(study.path("real.toml"), study.path("study.toml"));
-  EXPECT_EQ(server.post("/api/save", {{"text", shown["text"].get<std::string>() + "# more\n"}, {"hash", shown["hash"]}}).status, 400);
+  const json more = {{"text", shown["text"].get<std::string>() + "# more\n"}, {"hash", shown["hash"]}};
+  EXPECT_EQ(server.post("/api/save", more).status, 500);
+  EXPECT_EQ(content(study.path("study.toml")), shown["text"].get<std::string>()) << "nothing is saved that cannot be recorded";
   EXPECT_EQ(server.post("/api/job", {{"verb", "fit"}}).status, 500);
   EXPECT_EQ(server.job()["state"], "none") << "nothing is done that cannot be recorded";
+  fs::remove(study.path("out/session.sh"));
+  fs::rename(study.path("study.toml"), study.path("real.toml"));
+  fs::create_symlink(study.path("real.toml"), study.path("study.toml"));
+  EXPECT_EQ(server.post("/api/save", more).status, 400);
   EXPECT_EQ(content(study.path("elsewhere")), "mine\n");
   EXPECT_EQ(content(study.path("real.toml")), shown["text"].get<std::string>());
 }
@@ -148,9 +157,14 @@ TEST(CommandsOfThePage, AddWhereTheListSaysAndRemoveWhatWasAdded) {
   const std::string effect = (*several)["effect"];
   EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", {"rate=; rm -r /"}}}).status, 400);
   EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", "default"}}).status, 400) << "no list";
+  for (const json& models : {json::array({"", "drag"}), json::array({"drag"})})
+    EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"models", models}}).status, 409)
+        << "on models that are not there";
   std::string command = "misfit add " + file + " " + effect;
   for (const std::string word : (*several)["at"]) command += " '--at=" + word + "'";
-  EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", (*several)["at"]}}).parsed()["command"], command);
+  EXPECT_EQ(server.post("/api/job", {{"verb", "add"}, {"effect", effect}, {"at", (*several)["at"]}, {"models", json::array({""})}})
+                .parsed()["command"],
+            command);
   ASSERT_EQ(server.job()["state"], "done");
   ASSERT_EQ(server.state()["models"].size(), 2U);
   const json motion = server.get("/api/motion?model=1&method=output_error").parsed();

@@ -104,10 +104,9 @@ void add_first_views(const EmbeddedPage& page, std::size_t model, AllAnswers& ou
   const std::string number = fmt::format("model={}", model);
   const bool needed = model + 1 == page.places.size();  // it is shown first
   out.push_back({"where?" + number, where_view(page.places[model], model > 0 ? &page.places[model - 1] : nullptr), needed});
-  const std::vector<Fit> fits = fits_of(page.places[model]);
-  out.push_back({"motion?" + number, motion_view(fits, ""), needed});
+  out.push_back({"motion?" + number, motion_view(page.places[model], ""), needed});
   for (const std::string& method : methods_of(page.places))
-    out.push_back({fmt::format("motion?{}&method={}", number, method), motion_view(fits, method), needed});
+    out.push_back({fmt::format("motion?{}&method={}", number, method), motion_view(page.places[model], method), needed});
 }
 
 void add_other_views(const EmbeddedPage& page, std::size_t model, AllAnswers& out) {

@@ -40,11 +40,24 @@ std::vector<Place> places_of(const fs::path& study, const fs::path& folder, bool
   return out;
 }
 
+std::optional<Fit> fit_of(const Place& place, const std::string& method) {
+  const fs::path folder = place.folder / "fit" / method;
+  return as_shown(place, read_if(folder / "fit.json", [&] { return read_fit(folder); }));
+}
+
+std::vector<std::string> fitted_methods(const Place& place) {
+  std::vector<std::string> out;
+  for (const std::string& method : place.methods.empty() ? estimator_names() : place.methods) {
+    std::error_code none;
+    if (fs::is_regular_file(place.folder / "fit" / method / "fit.json", none)) out.push_back(method);
+  }
+  return out;
+}
+
 std::vector<Fit> fits_of(const Place& place) {
   std::vector<Fit> out;
-  for (const std::string& method : place.methods.empty() ? estimator_names() : place.methods) {
-    const fs::path folder = place.folder / "fit" / method;
-    if (auto fit = as_shown(place, read_if(folder / "fit.json", [&] { return read_fit(folder); }))) out.push_back(std::move(*fit));
+  for (const std::string& method : fitted_methods(place)) {
+    if (auto fit = fit_of(place, method)) out.push_back(std::move(*fit));
   }
   return out;
 }

@@ -33,6 +33,9 @@ struct Place {
 [[nodiscard]] std::vector<Place> places_of(const std::filesystem::path& study, const std::filesystem::path& folder, bool with_rungs = true);
 
 [[nodiscard]] std::vector<Fit> fits_of(const Place& place);
+/// Those that there is a fit of.
+[[nodiscard]] std::vector<std::string> fitted_methods(const Place& place);
+[[nodiscard]] std::optional<Fit> fit_of(const Place& place, const std::string& method);
 [[nodiscard]] std::optional<Diagnosis> diagnosis_of(const Place& place);
 [[nodiscard]] std::optional<Discovery> discovery_of(const Place& place);
 [[nodiscard]] std::optional<Comparison> comparison_of(const Place& place);

@@ -122,19 +122,25 @@ void add_curve_below(int model, const std::vector<Fit>& fits, const std::pair<st
 
 }  // namespace
 
-std::string motion_view(const std::vector<Fit>& fits, const std::string& method) {
-  const std::string methods = list_of(fits, [](const Fit& f) { return json_string(f.method); });
-  if (fits.empty()) return R"({"methods":[],"method":0,"channels":[],"blocks":[]})";
-  const auto asked = std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.method == method; });
-  const Fit& fit = asked != fits.end() ? *asked : fits.back();
+std::string motion_view(const Place& place, const std::string& method) {
+  std::vector<std::string> methods = fitted_methods(place);
+  auto asked = methods.end();
+  std::optional<Fit> fit;
+  while (!fit && !methods.empty()) {
+    asked = std::find(methods.begin(), methods.end(), method);
+    if (asked == methods.end()) --asked;
+    fit = fit_of(place, *asked);
+    if (!fit) methods.erase(asked);  // it cannot be read
+  }
+  if (!fit) return R"({"methods":[],"method":0,"channels":[],"blocks":[]})";
   std::vector<std::string> channels;
-  for (const ChannelPrediction& c : fit.predictions) {
+  for (const ChannelPrediction& c : fit->predictions) {
     channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"figure":{}}})", json_string(c.experiment),
                                    json_string(c.channel), json_words(c.channel),
-                                   json_of(report::motion_figure(fit.method, c, std::nullopt))));
+                                   json_of(report::motion_figure(fit->method, c, std::nullopt))));
   }
-  return fmt::format(R"({{"methods":{},"method":{},"channels":{},"blocks":{}}})", methods, &fit - fits.data(), json_list(channels),
-                     json_of(status_blocks({fit})));
+  return fmt::format(R"({{"methods":{},"method":{},"channels":{},"blocks":{}}})", list_of(methods, json_string), asked - methods.begin(),
+                     json_list(channels), json_of(status_blocks({*fit})));
 }
 
 std::string where_view(const Place& place, const Place* before) {

@@ -14,7 +14,7 @@ namespace misfit::page {
 
 /// Measured, predicted and residual of every channel by one of the fits. "", or a method that is not there: the last, whose residuals the
 /// other views are about.
-[[nodiscard]] std::string motion_view(const std::vector<Fit>& fits, const std::string& method);
+[[nodiscard]] std::string motion_view(const Place& place, const std::string& method);
 /// Missing force over time; maps over quantities and pairs of them; the names of the quantities.
 /// `before`: the model below it on the ladder, whose maps are drawn beside; nullptr: none.
 [[nodiscard]] std::string where_view(const Place& place, const Place* before);

@@ -114,7 +114,7 @@ std::vector<std::string> texts_in(const json& body, const char* name) {
 
 JobRequest request_in(const json& body) {
   return {text_in(body, "verb"), text_in(body, "effect"), text_in(body, "rung"), text_in(body, "what"),
-          text_in(body, "name"), text_in(body, "value"),  texts_in(body, "at")};
+          text_in(body, "name"), text_in(body, "value"),  texts_in(body, "at"),  texts_in(body, "models")};
 }
 
 }  // namespace
@@ -177,8 +177,11 @@ std::string Api::frame(const Ask& ask) {
   const std::filesystem::path film = films[number(ask, "film", films.size())].second;
   const double t = time_of(ask);
   const std::lock_guard lock(frames_mutex_);
-  const auto reader = frames_.try_emplace(film, film).first;
-  const std::optional<FramePicture> picture = reader->second.at(t);
+  const std::string stamp = file_stamp(film);
+  auto reader = frames_.find(film);
+  if (reader != frames_.end() && reader->second.stamp != stamp) reader = (frames_.erase(reader), frames_.end());  // it was replaced
+  if (reader == frames_.end()) reader = frames_.try_emplace(film, stamp, FrameReader(film)).first;
+  const std::optional<FramePicture> picture = reader->second.frames.at(t);
   if (!picture) throw RunError(film.string() + ": its frames cannot be decoded any more");
   return fmt::format(R"({{"t":{},"width":{},"height":{},"jpeg":"{}"}})", json_number(picture->t), picture->width, picture->height,
                      base64(picture->jpeg));
@@ -190,7 +193,7 @@ Answer Api::get(const Ask& ask) {
     const auto method = ask.parameters.find("method");
     if (method != ask.parameters.end() && find_estimator(method->second) == nullptr)
       throw InputError("method: one of " + join_words(estimator_names()) + " is expected");
-    return {200, page::motion_view(page::fits_of(place(ask)), method == ask.parameters.end() ? "" : method->second)};
+    return {200, page::motion_view(place(ask), method == ask.parameters.end() ? "" : method->second)};
   }
   if (ask.path == "/api/where") return {200, where(ask)};
   if (ask.path == "/api/samples") return {200, samples(ask)};
@@ -288,10 +291,14 @@ Answer Api::save(const std::string& text, const std::string& hash) {
   const std::lock_guard lock(mutex_);  // no command begins meanwhile
   if (jobs_.report().state == JobState::running)
     return failure(409, "a command is at work: wait for its end, or stop it, before the study is changed");
-  if (const auto fault = save_text(results_.study(), whole, hash, registry_))
-    return {422, fmt::format(R"({{"error":{},"faults":{}}})", json_string(fault->message),
+  const auto refused = [&](const TextFault& fault) -> Answer {
+    return {422, fmt::format(R"({{"error":{},"faults":{}}})", json_string(fault.message),
                              json_of(faults_of(results_.study(), whole, registry_)))};
-  script_.record_text(results_.study().string(), whole);
+  };
+  if (const auto fault = fault_of(results_.study(), whole, registry_)) return refused(*fault);
+  const SessionScript::Opened opened = script_.open();  // first: nothing is done that cannot be recorded
+  if (const auto fault = save_text(results_.study(), whole, hash, registry_)) return refused(*fault);
+  script_.record_text(opened, results_.study().string(), whole);
   return {200, fmt::format(R"({{"hash":"{}"}})", hash_text(whole))};
 }
 
@@ -323,6 +330,12 @@ std::vector<std::string> Api::words_of_remove(const JobRequest& request) const {
   throw InputError("rung: the number of a rung that was added is expected");
 }
 
+bool Api::has_models(const std::vector<std::string>& added) const {
+  const std::vector<Place> places = results_.places();
+  return std::equal(places.begin(), places.end(), added.begin(), added.end(),
+                    [](const Place& place, const std::string& effect) { return place.added == effect; });
+}
+
 std::vector<std::string> Api::words_of(const JobRequest& request) {
   if (request.verb == "add") return words_of_add(request);
   if (request.verb == "remove") return words_of_remove(request);
@@ -335,6 +348,8 @@ Answer Api::start(const JobRequest& request) {
   const auto verb = std::find(verbs.begin(), verbs.end(), request.verb);
   if (verb == verbs.end()) throw InputError("verb: run, fit, discover, add, remove or set is expected");
   std::vector<std::string> words{*verb, options_.study};
+  if (!request.models.empty() && !has_models(request.models))
+    return failure(409, "the models have changed since they were shown here: look again at what is to be done");
   const std::vector<std::string> more = words_of(request);
   words.insert(words.end(), more.begin(), more.end());
   if (!options_.out.empty() && request.verb != "set") words.insert(words.end(), {"--out", options_.out});

@@ -17,8 +17,9 @@ namespace misfit::serve {
 /// What is asked of POST /api/job.
 struct JobRequest {
   std::string verb, effect, rung;
-  std::string what, name, value;  ///< setting_of()
-  std::vector<std::string> at;    ///< words of the effect's place; empty: the one that explains most
+  std::string what, name, value;    ///< setting_of()
+  std::vector<std::string> at;      ///< words of the effect's place; empty: the one that explains most
+  std::vector<std::string> models;  ///< the effects that were added, as the page shows them; empty: whatever they are
 };
 
 /// What the page may ask for. Of a request only numbers of a list, keys of effects, and the text of the study itself are used; none becomes
@@ -27,8 +28,8 @@ struct JobRequest {
 /// GET  /api/state; /api/motion?model&method; /api/where?model; /api/samples?model&experiment&quantity; /api/candidates?model;
 ///      /api/added?model&experiment&candidate; /api/curves?model; /api/calibration; /api/ladder; /api/study?model; /api/session;
 ///      /api/frame?film&t (film: number in "films" of /api/state)
-/// POST /api/job {"verb": "run"|"fit"|"discover"|"add"|"remove"|"set", "effect", "at", "rung", "what", "name", "value"}; /api/stop;
-/// /api/check {"text"}; /api/save
+/// POST /api/job {"verb": "run"|"fit"|"discover"|"add"|"remove"|"set", "effect", "at", "models", "rung", "what", "name", "value"};
+/// /api/stop; /api/check {"text"}; /api/save
 /// {"text", "hash"}
 class Api {
  public:
@@ -49,6 +50,11 @@ class Api {
     std::vector<std::pair<std::string, std::filesystem::path>> films;  ///< experiment, its video
   };
 
+  struct Film {
+    std::string stamp;  ///< of the file as it was opened
+    FrameReader frames;
+  };
+
   [[nodiscard]] Answer get(const Ask& ask);
   [[nodiscard]] Answer post(const Ask& ask);
   [[nodiscard]] std::string state();
@@ -60,6 +66,8 @@ class Api {
   [[nodiscard]] Answer start(const JobRequest& request);
   /// Behind the study, out of what is known here: nothing of a request becomes a word of a command. InputError: it is not.
   [[nodiscard]] std::vector<std::string> words_of(const JobRequest& request);
+  /// Are these the effects that were added, in their order, "" first?
+  [[nodiscard]] bool has_models(const std::vector<std::string>& added) const;
   [[nodiscard]] std::vector<std::string> words_of_add(const JobRequest& request) const;
   [[nodiscard]] std::vector<std::string> words_of_remove(const JobRequest& request) const;
   [[nodiscard]] Answer save(const std::string& text, const std::string& hash);
@@ -78,7 +86,7 @@ class Api {
   std::shared_ptr<const Known> known_;
   Jobs jobs_;
   std::mutex frames_mutex_;  ///< of frames_
-  std::map<std::filesystem::path, FrameReader> frames_;
+  std::map<std::filesystem::path, Film> frames_;
 };
 
 }  // namespace misfit::serve

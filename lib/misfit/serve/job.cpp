@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -19,7 +20,7 @@ namespace misfit::serve {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t most_notes = 200, most_output = 1 << 16, most_points = 4000, longest_line = 4096;
+constexpr std::size_t most_notes = 200, most_output = 1 << 16, most_points = 2000, most_traces = 4, longest_line = 4096;
 constexpr std::chrono::seconds patience{10};
 constexpr int not_started = 127;  // status of a program that cannot be run, as a shell has it
 
@@ -208,6 +209,26 @@ void Jobs::read(Process& process) {
   }
 }
 
+namespace {
+
+/// Of one search; several are at work at once.
+CostTrace& trace_of(std::vector<CostTrace>& all, const std::string& work, const std::string& what) {
+  auto found = std::find_if(all.begin(), all.end(), [&](const CostTrace& one) { return one.work == work && one.what == what; });
+  if (found == all.end()) found = all.insert(all.end(), {work, what, {}});
+  return *found;
+}
+
+/// A full list goes on with every second of its points.
+void add_point(std::vector<std::pair<int, double>>& points, int iteration, double value) {
+  if (points.size() >= most_points) {
+    for (std::size_t k = 1; 2 * k < points.size(); ++k) points[k] = points[2 * k];
+    points.resize((points.size() + 1) / 2);
+  }
+  points.emplace_back(iteration, value);
+}
+
+}  // namespace
+
 /// A line of stderr: progress (apps/progress.cpp), or a note. With the lock held.
 void Jobs::hear(const std::string& line) {
   if (line.empty()) return;
@@ -228,11 +249,8 @@ void Jobs::hear(const std::string& line) {
   const auto value = number("value"), iteration = number("iteration");
   if (!value || !iteration) return;
   const std::string what = progress.contains("what") && progress["what"].is_string() ? progress["what"].get<std::string>() : "";
-  if (report_.costs.empty() || report_.costs.back().work != report_.work || report_.costs.back().what != what)
-    report_.costs.push_back({report_.work, what, {}});
-  std::vector<std::pair<int, double>>& points = report_.costs.back().points;
-  if (points.size() < most_points) points.emplace_back(static_cast<int>(*iteration), *value);
-  if (report_.costs.size() > most_notes) report_.costs.erase(report_.costs.begin());
+  add_point(trace_of(report_.costs, report_.work, what).points, static_cast<int>(*iteration), *value);
+  if (report_.costs.size() > most_traces) report_.costs.erase(report_.costs.begin());
 }
 
 void Jobs::end(const Process& process) {

@@ -28,10 +28,10 @@ struct JobReport {
   bool stopping = false;
   int status = 0;  ///< of exit
   double seconds = 0.0;
-  std::string work;            ///< what it is at
-  std::optional<double> part;  ///< of that work, 0…1
-  std::optional<double> left;  ///< seconds at most, where a limit holds
-  std::vector<CostTrace> costs;
+  std::string work;                ///< what it is at
+  std::optional<double> part;      ///< of that work, 0…1
+  std::optional<double> left;      ///< seconds at most, where a limit holds
+  std::vector<CostTrace> costs;    ///< of the last few searches
   std::vector<std::string> notes;  ///< lines of stderr, the last 200
   std::string output;              ///< of stdout, the last 64 kB
 };

@@ -16,19 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string stamp(const fs::path& file) {
-  std::error_code none;
-  const auto time = fs::last_write_time(file, none);
-  if (none) return "-";
-  return fmt::format("{}:{}", time.time_since_epoch().count(), fs::file_size(file, none));
-}
-
 /// Those of a study as it is now; itself alone where it has an error.
 std::vector<fs::path> files_named_by(const fs::path& study) {
   return page::read_if(study, [&] { return files_of_study(read_study(study)); }).value_or(std::vector<fs::path>{study});
 }
 
 }  // namespace
+
+std::string file_stamp(const fs::path& file) {
+  std::error_code none;
+  const auto time = fs::last_write_time(file, none);
+  if (none) return "-";
+  return fmt::format("{}:{}", time.time_since_epoch().count(), fs::file_size(file, none));
+}
 
 Results::Results(const SessionOptions& options) : study_(study_file(options.study)) {
   const fs::path beside = study_.has_parent_path() ? study_.parent_path() : fs::path(".");
@@ -37,8 +37,8 @@ Results::Results(const SessionOptions& options) : study_(study_file(options.stud
 
 std::string Results::version() const {
   std::string all;
-  for (const fs::path& file : files_named_by(study_)) all += stamp(file) + " ";
-  for (const page::Place& place : places()) all += stamp(place.study) + " " + stamp(place.folder / "run.json") + " ";
+  for (const fs::path& file : files_named_by(study_)) all += file_stamp(file) + " ";
+  for (const page::Place& place : places()) all += file_stamp(place.study) + " " + file_stamp(place.folder / "run.json") + " ";
   return hash_text(all);
 }
 

@@ -10,6 +10,9 @@
 
 namespace misfit::serve {
 
+/// Another text whenever the file may have changed.
+[[nodiscard]] std::string file_stamp(const std::filesystem::path& file);
+
 /// The study whose page is shown, and its run folder.
 class Results {
  public:

@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -42,17 +44,19 @@ std::string command_of(const std::vector<std::string>& words) {
   return out;
 }
 
-void SessionScript::record_text(const std::string& study, const std::string& text) const {
+void SessionScript::record_text(const Opened& opened, const std::string& study, const std::string& text) const {
   const std::string mark = end_mark(text);
-  append("cat > " + shell_word(study) + " <<'" + mark + "'\n" + text + (text.ends_with('\n') ? "" : "\n") + mark + "\n");
+  append(opened, "cat > " + shell_word(study) + " <<'" + mark + "'\n" + text + (text.ends_with('\n') ? "" : "\n") + mark + "\n");
 }
 
 void SessionScript::record_end(const std::string& command, int status, bool stopped) const {
+  const Opened opened = open();  // nobody adds a line meanwhile
   std::string lines = text();
-  if (!lines.ends_with("\n" + command + "\n")) return;
+  const std::size_t before = lines.rfind("\n" + command + "\n");
+  if (before == std::string::npos) return;
   std::string instead = "# stopped: " + command;
   if (!stopped) instead = status == 1 ? command + " || [ $? -eq 1 ]" : fmt::format("# ended with status {}: {}", status, command);
-  write_atomically(path_, lines.replace(lines.size() - command.size() - 1, command.size(), instead));
+  write_atomically(path_, lines.replace(before + 1, command.size(), instead));
 }
 
 std::string SessionScript::text() const {
@@ -60,15 +64,33 @@ std::string SessionScript::text() const {
   return fs::symlink_status(path_, none).type() == fs::file_type::regular ? read_file(path_) : "";
 }
 
-void SessionScript::append(const std::string& lines) const {
-  make_writable_folder(path_.parent_path());
-  const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
-  if (file < 0) throw WriteError(path_.string() + ": cannot be written: " + std::strerror(errno));
-  const std::string all = (::lseek(file, 0, SEEK_END) == 0 ? head : "") + way_there(text()) + lines;
-  const bool whole = ::write(file, all.data(), all.size()) == static_cast<ssize_t>(all.size());
-  const int error = errno;
-  ::close(file);
-  if (!whole) throw WriteError(path_.string() + ": cannot be written: " + std::strerror(error));
+void SessionScript::append(const Opened& opened, const std::string& lines) const {
+  const std::string before = text();
+  opened.append((before.empty() ? head : "") + way_there(before) + lines);
+}
+
+SessionScript::Opened::Opened(const fs::path& path) : path_(path) {
+  make_writable_folder(path.parent_path());
+  do {
+    if (file_ >= 0) ::close(file_);
+    file_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
+    if (file_ < 0) throw WriteError(path.string() + ": cannot be written: " + std::strerror(errno));
+    ::flock(file_, LOCK_EX);
+  } while (!is_there());
+}
+
+/// False: another process has put a new file in its place before this one could be locked.
+bool SessionScript::Opened::is_there() const {
+  struct stat own {
+  }, there{};
+  return ::fstat(file_, &own) == 0 && ::stat(path_.c_str(), &there) == 0 && own.st_ino == there.st_ino && own.st_dev == there.st_dev;
+}
+
+SessionScript::Opened::~Opened() { ::close(file_); }
+
+void SessionScript::Opened::append(const std::string& lines) const {
+  if (::write(file_, lines.data(), lines.size()) != static_cast<ssize_t>(lines.size()))
+    throw WriteError(path_.string() + ": cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace misfit::serve

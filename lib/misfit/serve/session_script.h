@@ -17,17 +17,34 @@ class SessionScript {
   /// another.
   explicit SessionScript(const std::filesystem::path& folder) : path_(folder / "session.sh") {}
 
-  void record(const std::string& command) const { append(command + "\n"); }
-  /// The command, recorded last, ended otherwise than well. With status 1 it may have left results (a method that declines): its line lets
-  /// the others follow. Stopped or refused, it is not to be done again: its line becomes a comment.
+  /// The file, opened to be appended to, by one at a time, also of several servers: who has one can record.
+  class Opened {
+   public:
+    explicit Opened(const std::filesystem::path& path);  ///< WriteError: it cannot be written
+    ~Opened();
+    Opened(const Opened&) = delete;
+    Opened& operator=(const Opened&) = delete;
+    void append(const std::string& lines) const;
+
+   private:
+    [[nodiscard]] bool is_there() const;
+
+    std::filesystem::path path_;
+    int file_ = -1;
+  };
+  [[nodiscard]] Opened open() const { return Opened(path_); }
+
+  void record(const std::string& command) const { append(open(), command + "\n"); }
+  /// The command, of which this is the last line, ended otherwise than well. With status 1 it may have left results (a method that
+  /// declines): its line lets the others follow. Stopped or refused, it is not to be done again: its line becomes a comment.
   void record_end(const std::string& command, int status, bool stopped) const;
   /// That the study was given this text.
-  void record_text(const std::string& study, const std::string& text) const;
+  void record_text(const Opened& opened, const std::string& study, const std::string& text) const;
   /// All of it; empty if nothing was recorded.
   [[nodiscard]] std::string text() const;
 
  private:
-  void append(const std::string& lines) const;
+  void append(const Opened& opened, const std::string& lines) const;
 
   std::filesystem::path path_;
 };

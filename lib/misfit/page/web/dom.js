@@ -104,16 +104,17 @@ export function shown(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
   const text = size !== 0 && (size >= 1e6 || size < 1e-4) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
-  return text.replace('-', '−');
+  return text.replaceAll('-', '−');
 }
 
 /** Significant digits with which numbers of this size are told apart that differ by `difference`, such as times in UNIX seconds. */
 const digitsFor = (value, difference) => (value === 0 || !(difference > 0) ? 1 : Math.floor(Math.log10(Math.abs(value) / difference)) + 2);
 
-/** A place on an axis of which `span` is seen: to a thousandth of it, and with five digits at least. */
-export function shownPlace(value, span) {
-  const digits = Math.min(digitsFor(value, span) + 3, 15);
-  return digits <= 5 || !Number.isFinite(value) ? shown(value, 5) : String(Number(value.toPrecision(digits))).replaceAll('-', '−');
+/** A place on an axis of which `span` is seen: to a thousandth of it, and with five digits at least; with `least`: so many, and to as many
+    places of the span. */
+export function shownPlace(value, span, least = 5) {
+  const digits = Math.min(digitsFor(value, span) + least - 2, 15);
+  return digits <= least || !Number.isFinite(value) ? shown(value, least) : String(Number(value.toPrecision(digits))).replaceAll('-', '−');
 }
 
 /** Beside an axis, as short as it goes: "20", "0.125", "1e6", "−2.5e−9"; neighbours, a `step` apart, differ. */
@@ -127,7 +128,7 @@ export function tick(value, step = 0) {
 export function shownWithSigma(value, sigma) {
   if (!(sigma > 0) || !Number.isFinite(value)) return shown(value);
   const size = Math.max(Math.abs(value), sigma);
-  if (size >= 1e6 || size < 1e-4) return `${shown(value, 3)} ± ${shown(sigma, 2)}`;
+  if ((size >= 1e6 && sigma >= 100) || size < 1e-4) return `${shown(value, Math.min(Math.max(digitsFor(value, sigma), 2), 15))} ± ${shown(sigma, 2)}`;
   const places = Math.min(Math.max(1 - Math.floor(Math.log10(sigma)), 0), 8);
-  return `${value.toFixed(places).replace('-', '−')} ± ${sigma.toFixed(places)}`;
+  return `${value.toFixed(places).replaceAll('-', '−')} ± ${sigma.toFixed(places)}`;
 }

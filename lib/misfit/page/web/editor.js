@@ -1,12 +1,13 @@
 // The study's text: checked by misfit while it is typed, saved only when nothing is wrong with it.
 import { element } from '/dom.js';
 
-export function editor({ get, post, look }) {
+export function editor({ get, kept, post, look }) {
   // Of the study itself, also while the text of a rung is shown, which can only be read:
   let known = null; // as it lies on disk
   let text = null; // as it is typed; null: unchanged
   let faults = [], timer = 0, parts = null; // of what is shown
   let saved = false; // by this page, and unchanged since
+  let stale = false; // somebody else has changed the file since it was read
 
   const changed = () => text !== null && text !== known?.text;
 
@@ -23,7 +24,7 @@ export function editor({ get, post, look }) {
     if (faults.length > 0) parts.message.append(' ', jump(faults[0]));
     parts.further.replaceChildren(...faults.slice(1).map((fault) => element('li', {}, fault.message, ' ', jump(fault))));
     parts.furtherHead.hidden = faults.length < 2;
-    parts.save.disabled = !changed() || faults.length > 0;
+    parts.save.disabled = !changed() || stale || faults.length > 0;
     parts.undo.disabled = !changed();
   }
   function go(line) {
@@ -33,7 +34,10 @@ export function editor({ get, post, look }) {
     parts.area.setSelectionRange(begin, end < 0 ? parts.area.value.length : end);
     parts.area.scrollTop = Math.max(0, (line - 5) * parseFloat(getComputedStyle(parts.area).lineHeight));
   }
-  const verdict = () => tell(faults.length > 0 ? faults[0].message : parts.editable && changed() ? 'Nothing is wrong with it; not saved yet.' : parts.editable && saved ? 'Saved. Run makes the results anew.' : 'Nothing is wrong with it.', faults.length > 0 ? 'fault' : 'fine');
+  function verdict() {
+    if (parts.editable && stale) return tell('The file was changed by somebody else meanwhile: copy what you typed, then "Undo all".', 'fault');
+    tell(faults.length > 0 ? faults[0].message : parts.editable && changed() ? 'Nothing is wrong with it; not saved yet.' : parts.editable && saved ? 'Saved. Run makes the results anew.' : 'Nothing is wrong with it.', faults.length > 0 ? 'fault' : 'fine');
+  }
 
   async function check() {
     const mine = parts, asked = parts.area.value;
@@ -63,6 +67,7 @@ export function editor({ get, post, look }) {
       known = { ...known, text: asked, hash: answer.hash, faults: [] };
       if (text === asked) text = null; // else it was typed on meanwhile, and is checked again
       saved = text === null;
+      stale = false;
       if (saved && parts.editable) {
         faults = [];
         number();
@@ -76,26 +81,45 @@ export function editor({ get, post, look }) {
       tell(error.message, 'fault');
     }
   }
-  function undo() {
-    parts.area.value = known.text;
+  function take(fresh) {
+    if (fresh.hash !== known?.hash) saved = false;
+    known = fresh;
     text = null;
-    faults = known.faults;
-    number();
+    stale = false;
+  }
+  /** Back to the file as it is now, which somebody else may have changed. */
+  async function undo() {
+    const mine = parts;
+    try {
+      const fresh = await get('study', { model: 0 });
+      if (mine !== parts) return;
+      take(fresh);
+      parts.area.value = known.text;
+      faults = known.faults;
+      number();
+      verdict();
+    } catch (error) {
+      if (mine === parts) tell(error.message, 'fault');
+    }
+  }
+
+  const ask = (model) => kept('study', { model });
+
+  /** While something is typed: is the file still the one that was read? */
+  function compare(fresh) {
+    if (!fresh.editable || !parts?.editable || stale === (fresh.hash !== known.hash)) return;
+    stale = !stale;
     verdict();
   }
 
-  async function show(view, model) {
-    const fresh = await get('study', { model });
+  function show(view, fresh) {
     clearTimeout(timer);
-    const kept = fresh.editable && changed();
-    if (fresh.editable && !kept) {
-      if (fresh.hash !== known?.hash) saved = false;
-      known = fresh;
-      text = null;
-    }
-    faults = kept ? [] : fresh.faults;
-    const area = element('textarea', { spellcheck: 'false', wrap: 'off', 'aria-label': 'Text of the study', readonly: !fresh.editable, oninput: typed });
-    area.value = kept ? text : fresh.text;
+    const keeps = fresh.editable && changed();
+    if (keeps) stale = fresh.hash !== known.hash;
+    else if (fresh.editable) take(fresh);
+    faults = keeps ? [] : fresh.faults;
+    const area = element('textarea', { id: 'study-text', spellcheck: 'false', wrap: 'off', 'aria-label': 'Text of the study', readonly: !fresh.editable, oninput: typed });
+    area.value = keeps ? text : fresh.text;
     parts = { editable: fresh.editable, area, lines: element('pre', { 'aria-hidden': 'true' }), message: element('p', { 'aria-live': 'polite', id: 'check' }),
       furtherHead: element('p', { hidden: true }, 'More errors, found after skipping those already listed:'), further: element('ul', { class: 'fault', id: 'further' }),
       save: element('button', { id: 'save', class: 'main', onclick: save }, 'Save'), undo: element('button', { onclick: undo }, 'Undo all') };
@@ -104,10 +128,9 @@ export function editor({ get, post, look }) {
       element('div', { class: 'editor' }, parts.lines, area), parts.message, parts.furtherHead, parts.further);
     if (fresh.editable) view.append(element('div', { class: 'buttons' }, parts.save, parts.undo));
     number();
-    if (kept && fresh.hash !== known.hash) tell('The file was changed by somebody else meanwhile: copy what you typed, then "Undo all" and reload.', 'fault');
-    else if (kept) check();
+    if (keeps && !stale) check();
     else verdict();
   }
 
-  return { show, changed };
+  return { ask, show, compare, changed };
 }

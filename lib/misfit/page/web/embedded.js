@@ -14,6 +14,7 @@ function whole(value, lists) {
 export const live = false;
 
 export class Refused extends Error {}
+export class Unreachable extends Error {}
 
 export async function get(what, parameters = {}) {
   const { lists, answers } = await unpacked;
@@ -21,6 +22,9 @@ export async function get(what, parameters = {}) {
   if (answer === undefined) throw new Refused('This view found no room in the report; `misfit open` shows it.');
   return whole(answer, lists);
 }
+/** Nothing changes in a document. */
+export const kept = get;
+export function outdate() {}
 export async function post() {
   throw new Refused('A report can only be read; `misfit open` shows the study.');
 }
@@ -47,4 +51,5 @@ const button = (text, on) => {
 document.body.prepend(page);
 page.querySelector('.top').append(button('Read as a document', false));
 document.querySelector('body > header').append(button('Explore: point, zoom, compare', true));
-explore(true);
+explore(location.hash === '' || location.hash.startsWith('#view=')); // else a section of the document was asked for
+if (document.body.dataset.exploring === 'false') document.querySelector(':target')?.scrollIntoView();

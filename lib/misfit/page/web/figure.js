@@ -42,9 +42,28 @@ export function nearest(numbers, value) {
   return value - numbers[at - 1] <= numbers[at] - value ? at - 1 : at;
 }
 
+/** Of the series of that kind in the first panel, held out or not; undefined: it has no sample there. */
+export function valueAt(figure, kind, t) {
+  for (const s of figure.panels[0].series) {
+    const x = figure.xs[s.x], k = nearest(x, t), interval = Math.min(x[k] - x[k - 1] || Infinity, x[k + 1] - x[k] || Infinity);
+    if (s.key.startsWith(kind) && Math.abs(x[k] - t) <= interval && s.y[k] !== null && s.y[k] !== undefined) return s.y[k];
+  }
+  return undefined;
+}
+
 function ascends(x) {
-  for (let i = 1; i < x.length; ++i) if (!(x[i] >= x[i - 1])) return false;
+  for (let i = 0; i < x.length; ++i) if (x[i] === null || (i > 0 && !(x[i] >= x[i - 1]))) return false;
   return x.length > 1;
+}
+
+const clamped = (k, list) => Math.min(Math.max(k, 0), list.length - 1);
+const distinct = (numbers) => [...new Set(numbers)].sort((a, b) => a - b);
+
+/** Of a map over two quantities: the place of the cell so many columns to the right and rows up; at its edge it is the last one there. */
+function cellBeside(cells, [x, y], columns, rows) {
+  const xs = distinct(cells.x), to = xs[clamped(nearest(xs, x) + columns, xs)];
+  const ys = distinct(cells.y.filter((_, i) => cells.x[i] === to));
+  return [to, ys[clamped(nearest(ys, y) + rows, ys)]];
 }
 
 /** Plots over time that share cursor, zoom and marks. */
@@ -56,6 +75,7 @@ export class TimeGroup {
     this.onmark = () => {};
     this.onbegun = () => {};
     this.onzoom = () => {};
+    this.oncursor = () => {};
     this.begun = undefined;
     this.pressed = null; // the plot in which the mouse went down
     this.sync = uPlot.sync('time');
@@ -71,6 +91,19 @@ export class TimeGroup {
   }
   point(t) {
     for (const plot of this.plots) plot.pointAt(t);
+  }
+  /** Where the cursor is seen; null: nowhere. */
+  cursor() {
+    return [...this.plots].find((plot) => plot.u.cursor.left >= 0)?.cursor ?? null;
+  }
+  /** In plots that are drawn anew: nobody has moved it. */
+  putBack(cursor) {
+    this.quiet = true;
+    this.point(cursor);
+    this.quiet = false;
+  }
+  moved(t) {
+    if (!this.quiet) this.oncursor(t);
   }
   /** A mark by keys: from one cursor to the next. */
   markFrom(t) {
@@ -94,6 +127,12 @@ function extent(lists, from, to, out) {
   }
 }
 
+const spanOf = (numbers) => {
+  const out = [Infinity, -Infinity];
+  extent([numbers], 0, numbers.length, out);
+  return out[1] - out[0];
+};
+
 const withX = { boxes: true, cells: true, x_bars: true };
 
 class Plot {
@@ -109,10 +148,12 @@ class Plot {
     this.xRange = panel.beside?.range ?? this.figure.xRange ?? this.extentOfX();
     this.node = element('div', { class: 'panel' });
     this.legend = this.makeLegend();
-    this.host = element('div', { class: 'plot', tabindex: 0, role: 'img', 'aria-label': this.spoken() });
+    this.host = element('div', { class: 'plot', tabindex: 0, role: 'application', 'aria-roledescription': 'plot', 'aria-label': this.spoken(),
+      'data-plot': `${view.options.key ?? this.figure.name} ${this.figure.panels.indexOf(panel)}` });
     this.values.sort((a, b) => (a.name === '') - (b.name === '')); // what is known of all before what is said of it
     this.readout = this.values.length > 0 ? element('p', { class: 'readout' }) : null;
     this.node.append(this.legend, this.readout ?? '', this.host);
+    for (const [event, live] of [['focus', 'polite'], ['blur', 'off']]) this.host.addEventListener(event, () => this.readout?.setAttribute('aria-live', live));
     if ((last && view.options.xLabel !== false) || panel.beside)
       this.node.append(element('p', { class: 'xlabel' }, words(panel.beside?.label ?? xLabel), panel.beside ? '' : this.unitText(this.figure.xUnit)));
     (view.row ?? view.node).append(this.node);
@@ -143,12 +184,26 @@ class Plot {
     return [out[0] - space, out[1] + space];
   }
 
-  /** Of what is seen between two values of x. */
-  extentOfY([from, to]) {
+  /** Of what is drawn between two values of x; with `scales` never less than it was there before. */
+  rangeOfY(window) {
+    const out = [...this.extentOfY(window)], { scales } = this.view.options;
+    for (const s of this.view.overlay ?? []) extent([s.y], ...this.placesIn(s, window), out);
+    if (!scales) return out;
+    const key = `${this.figure.panels.indexOf(this.panel)} ${window}`;
+    extent([scales.get(key)], 0, 2, out);
+    scales.set(key, out);
+    return out;
+  }
+  placesIn(s, [from, to]) {
+    if (!s.sorted) return [0, s.x.length];
+    return [Math.max(lowerBound(s.x, from) - 1, 0), Math.min(lowerBound(s.x, to) + 1, s.x.length)];
+  }
+  /** Of the series between two values of x. */
+  extentOfY(window) {
     if (this.panel.range) return this.panel.range;
     const out = [Infinity, -Infinity], bands = [Infinity, -Infinity];
     for (const s of this.series) {
-      const begin = s.sorted ? Math.max(lowerBound(s.x, from) - 1, 0) : 0, end = s.sorted ? Math.min(lowerBound(s.x, to) + 1, s.x.length) : s.x.length;
+      const [begin, end] = this.placesIn(s, window);
       if (s.style === 'band' || s.style === 'pale_band') extent([s.lo, s.hi], begin, end, bands);
       if (s.style === 'error_bars') extent([s.lo, s.hi], begin, end, out);
       if (s.style === 'bars') extent([s.lo, s.hi], begin, end, out);
@@ -185,7 +240,8 @@ class Plot {
         swatch.style.background = `repeating-linear-gradient(90deg, ${colour(s.colour, s.style)} 0 ${dash}px, transparent ${dash}px ${dash + gap}px)`;
       }
       out.append(element('span', {}, swatch, words(s.legend)));
-      if (s.sorted && s.y && s.style !== 'bars') this.values.push({ s, name: plain(s.legend).split(', ±')[0], sigma: this.sigmaOf(s) });
+      if (s.sorted && s.y && s.style !== 'bars')
+        this.values.push({ s, name: plain(s.legend).split(', ±')[0], sigma: this.sigmaOf(s), span: spanOf(s.y) });
       else if (s.style === 'band' && s.sorted && plain(s.legend).startsWith('±')) this.values.push({ s, name: '', sigma: { band: s } });
     }
     if (this.series.some((s) => s.style === 'cells')) out.append(this.scale());
@@ -206,12 +262,12 @@ class Plot {
   words(x) {
     const xUnit = plain(this.figure.xUnit), unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
     const out = [`${this.view.group ? '' : `${plain(this.figure.xLabel)} `}${shownPlace(x, this.window[1] - this.window[0])}${behind(xUnit)}`];
-    for (const { s, name, sigma } of this.values) {
+    for (const { s, name, sigma, span } of this.values) {
       if (s.x.length === 0) continue;
       const k = nearest(s.x, x), v = s.y?.[k] ?? null, lo = sigma?.band.lo[k] ?? null, hi = sigma?.band.hi[k] ?? null;
       const half = lo === null || hi === null ? null : 0.5 * (hi - lo);
       if (name === '' && half !== null) out.push(`${plain(s.legend).replace(/^± /, '')} ${shown(half, 2)}`);
-      else if (v !== null) out.push(`${name} ${shownWithSigma(v, half)}`);
+      else if (v !== null) out.push(`${name} ${half > 0 ? shownWithSigma(v, half) : shownPlace(v, span, 4)}`);
     }
     return out.join(' · ') + (out.length > 1 ? behind(unit) : '');
   }
@@ -293,11 +349,17 @@ class Plot {
 
   showX(window) {
     this.window = window ?? this.xRange;
-    const [low, high] = this.extentOfY(this.window);
+    const [low, high] = this.rangeOfY(this.window);
     this.u.batch(() => {
       this.u.setScale('x', { min: this.window[0], max: this.window[1] });
       this.u.setScale('y', { min: low, max: high });
     });
+  }
+  /** Series over the others have changed. */
+  redrawOver() {
+    const [low, high] = this.rangeOfY(this.window), { min, max } = this.u.scales.y;
+    if (low === min && high === max) this.u.redraw(false);
+    else this.showX(this.window);
   }
   zoom(window) {
     if (this.view.group) this.view.group.zoom(window);
@@ -321,14 +383,16 @@ class Plot {
     else if (!this.shift) this.zoom(window);
   }
   hover(event) {
-    this.view.options.onpoint?.(this, this.u.posToVal(event.offsetX, 'x'), this.u.posToVal(event.offsetY, 'y'));
+    this.cursorY = this.u.posToVal(event.offsetY, 'y');
+    this.view.options.onpoint?.(this, this.u.posToVal(event.offsetX, 'x'), this.cursorY);
   }
   click(event) {
     this.view.options.onpick?.(this, this.u.posToVal(event.offsetX, 'x'), this.u.posToVal(event.offsetY, 'y'));
   }
 
-  pointAt(x) {
+  pointAt(x, y = null) {
     this.cursor = x;
+    this.cursorY = y;
     this.u.setCursor({ left: this.u.valToPos(x, 'x'), top: 10 }, false);
     this.read();
   }
@@ -336,30 +400,43 @@ class Plot {
     const left = this.u?.cursor.left;
     const inside = left !== undefined && left >= 0;
     if (inside) this.cursor = this.u.posToVal(left, 'x');
-    if (this.view.group && inside) this.view.options.oncursor?.(this.cursor);
+    if (inside) this.view.group?.moved(this.cursor);
     if (!this.readout) return;
     const text = inside ? this.words(this.cursor) : '';
     if (this.readout.textContent !== text) this.readout.textContent = this.readout.title = text;
   }
+  /** Where the keys lead from the cursor, so many steps to the right and upwards; null: nowhere. */
+  beside(right, up) {
+    const { min, max } = this.u.scales.y, at = [this.cursor ?? 0.5 * (this.window[0] + this.window[1]), this.cursorY ?? 0.5 * (min + max)];
+    const cells = this.series.find((s) => s.style === 'cells' && s.x.length > 0);
+    if (cells) return cellBeside(cells, at, right, up);
+    const samples = this.series.find((s) => s.sorted && s.y?.length > 0) ?? this.series.find((s) => s.sorted);
+    if (!samples || up !== 0) return null;
+    return [samples.x[clamped(nearest(samples.x, at[0]) + right, samples.x)], null];
+  }
+  go([x, y]) {
+    const [from, to] = this.window;
+    if (x < from || x > to) this.zoom([x - 0.5 * (to - from), x + 0.5 * (to - from)]);
+    if (this.view.group) this.view.group.point(x);
+    else this.pointAt(x, y);
+    this.view.options.onkeypoint?.(this, x, y);
+  }
   key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return; // the browser's own
     const [from, to] = this.window, all = this.xRange;
-    const sorted = this.series.find((s) => s.sorted);
     const at = this.cursor ?? 0.5 * (from + to);
     const around = (share) => [Math.max(at - share * (at - from), all[0]), Math.min(at + share * (to - at), all[1])];
+    const far = event.shiftKey ? 10 : 1;
+    const steps = { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowDown: [0, -far], ArrowUp: [0, far] }[event.key];
+    const place = steps ? this.beside(...steps) : null;
     if (event.key === '+' || event.key === '=') this.zoom(around(0.5));
     else if (event.key === '-') {
       const next = around(2);
       this.zoom(next[0] <= all[0] && next[1] >= all[1] ? null : next);
     } else if (event.key === '0') this.all();
-    else if ((event.key === 'ArrowLeft' || event.key === 'ArrowRight') && sorted) {
-      const step = (event.key === 'ArrowLeft' ? -1 : 1) * (event.shiftKey ? 10 : 1);
-      const k = Math.min(Math.max(nearest(sorted.x, at) + step, 0), sorted.x.length - 1), x = sorted.x[k];
-      if (x < from || x > to) this.zoom([x - 0.5 * (to - from), x + 0.5 * (to - from)]);
-      if (this.view.group) this.view.group.point(x);
-      else this.pointAt(x);
-      this.view.options.onkeypoint?.(this, x);
-    } else if ((event.key === 'm' || event.key === 'M') && this.view.group) this.view.group.markFrom(at);
-    else if (event.key === 'Enter') this.view.options.onpick?.(this, at, null);
+    else if (place) this.go(place);
+    else if ((event.key === 'm' || event.key === 'M') && this.view.group) this.view.group.markFrom(at);
+    else if (event.key === 'Enter') this.view.options.onpick?.(this, ...(this.beside(0, 0) ?? [at, null]));
     else return;
     event.preventDefault();
   }
@@ -439,15 +516,17 @@ class Plot {
   }
 }
 
-/** Of marked times and cells. */
+/** Of marked times and cells, in their order: of many thousands, those that a pixel already shows are passed over. */
 function paintIntervals(pen, intervals) {
+  const pixel = (pen.x1 - pen.x0) / pen.width, least = 1.5 * pen.ratio * pixel;
   pen.ctx.fillStyle = style('--mark');
-  let last = -1;
+  let end = -Infinity; // of what is painted
   for (const [from, to] of intervals) {
-    if (to < pen.x0 || from > pen.x1) continue;
-    const a = Math.max(pen.X(from), last), b = Math.max(pen.X(to), pen.X(from) + 1.5 * pen.ratio);
-    if (b > a) pen.ctx.fillRect(a, pen.top, b - a, pen.height);
-    last = Math.max(last, b);
+    if (to < pen.x0 || to <= end) continue;
+    if (from > pen.x1) break;
+    const begin = Math.max(from, end);
+    end = Math.max(to, from + least);
+    if (end > begin) pen.ctx.fillRect(pen.X(begin), pen.top, pen.X(end) - pen.X(begin), pen.height);
   }
 }
 
@@ -682,8 +761,9 @@ const painters = {
 };
 
 /** A figure in the document. options: group (TimeGroup), height (of panels, in those of the report), title and caption (false: none), onpoint,
-    onleave, onpick, onkeypoint, oncursor. `cells`, `boxes`: what is emphasised, highlight() after a change; mark(): samples;
-    `overlay`: series that are drawn over the others, redraw() after a change. */
+    onleave, onpick, onkeypoint, onzoom; key: its name where others take its place; scales: a Map that they share, so that they have one scale.
+    `cells`, `boxes`: what is emphasised, highlight() after a change; mark(): samples; `overlay`: series that are drawn over the others,
+    redrawOver() after a change. */
 export class Figure {
   constructor(parent, figure, options = {}) {
     this.figure = figure;
@@ -726,9 +806,19 @@ export class Figure {
   }
   zoom(window) {
     for (const plot of this.plots) if (!plot.panel.beside) plot.showX(window);
+    this.node.dataset.window = window === null ? '' : window.join(' ');
+    this.options.onzoom?.(window);
+  }
+  /** Is there anything between these values of x? */
+  reaches([from, to]) {
+    const [low, high] = this.plots.find((plot) => !plot.panel.beside).xRange;
+    return from < high && to > low;
   }
   redraw() {
     for (const plot of this.plots) plot.u.redraw(false);
+  }
+  redrawOver() {
+    for (const plot of this.plots) plot.redrawOver();
   }
   /** After a change of `cells` or `boxes`: the series stay. */
   highlight() {

@@ -1,7 +1,8 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
 import { askingButton, blocks, breakable, element, fittedTable, plain, shown, shownPlace, words } from '/dom.js';
-import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
-import { get, live, post, Refused } from '/server.js';
+import { PairCells, SamplesByCell, rangeOf } from '/cells.js';
+import { Figure, TimeGroup, lowerBound, nearest, onScreenChange, valueAt } from '/figure.js';
+import { get, kept, live, outdate, post, Unreachable } from '/server.js';
 import { editor } from '/editor.js';
 
 const at = (id) => document.getElementById(id);
@@ -10,8 +11,17 @@ const oneColumn = matchMedia('(max-width: 62rem)'), phone = matchMedia('(max-wid
 const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves, parameters'], ['calibration', 'Calibration'],
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
+/** Marked times: of samples `times`, each with its surroundings in `intervals`; or intervals alone. */
+const nothingMarked = { intervals: [], times: [], text: '' };
+
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
-const here = { state: null, model: 0, tab: 'where', method: null, name: undefined, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, added: null, marked: '', fixed: [], settingsOpen: false, late: false, chosen: false };
+const here = { state: null, model: 0, tab: 'where', method: null, name: undefined, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, fixed: nothingMarked, late: false, chosen: false,
+  added: null, // the candidate whose force stands in the plot: { name, figure, of: the missing force beside it }
+  candidate: null, // the name of the one whose button keeps it there
+  picked: null, // the cell that stays marked: { map, cells, boxes }
+  zooms: new Map(), // of figures of the views, by their names
+  open: new Set(), // what is unfolded
+  allCandidates: false };
 
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
@@ -19,6 +29,7 @@ function readAddress() {
   here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : 'where';
 }
 function writeAddress() {
+  if (document.body.dataset.exploring === 'false') return; // the address is that of a section of report.html
   history.replaceState(null, '', `${location.search}#view=${here.tab}&model=${here.model}`);
 }
 
@@ -28,29 +39,39 @@ function say(error) {
 
 // ---- state and jobs
 
-let version = null, jobNumber = null, busy = false, again = false;
+let version = null;
 
 /** Asks what there is; shows what has changed. */
 async function look() {
   const state = await get('state');
-  const job = state.job;
-  const ended = jobNumber !== null && here.state?.job.state === 'running' && job.state !== 'running';
+  const job = state.job, before = here.state?.job;
+  const changed = job.number !== before?.number || job.state !== before?.state;
   here.state = state;
   showJob(job);
-  if (state.version !== version || ended) {
+  if (state.version !== version || (changed && before?.state === 'running')) {
     const grown = here.models !== undefined && state.models.length > here.models;
-    version = state.version;
     here.models = state.models.length;
     if ((grown && !inHand()) || here.model >= state.models.length) here.model = state.models.length - 1;
+    outdate();
     showHead();
     await showAll();
-  }
-  if (here.late && here.tab !== 'study' && !inHand()) {
-    here.late = false;
-    await showView();
-  }
-  jobNumber = job.number;
+    version = state.version; // now that it is seen
+  } else if (here.late || (changed && here.tab === 'commands')) await refreshView();
   return job.state === 'running';
+}
+
+/** What hinders looking, said once, as long as it does. */
+const trouble = element('p', { class: 'warning' });
+function hindered(error) {
+  const lost = error instanceof Unreachable;
+  if (lost) document.body.dataset.lost = 'yes';
+  const text = lost ? 'misfit does not answer any more: start `misfit open` again and use the address that it prints.' : String(error?.message ?? error);
+  if (trouble.textContent !== text) trouble.textContent = text;
+  if (!trouble.isConnected) at('alerts').append(trouble);
+}
+function unhindered() {
+  delete document.body.dataset.lost;
+  trouble.remove();
 }
 
 async function watch() {
@@ -63,15 +84,10 @@ async function watch() {
     let running = false;
     try {
       running = await look();
-      if (document.body.dataset.lost) location.reload();
+      if (document.body.dataset.lost) await showAll(); // what was asked for meanwhile
+      unhindered();
     } catch (error) {
-      if (error instanceof Refused) {
-        if (!document.body.dataset.refused) say(error);
-        document.body.dataset.refused = 'yes';
-      } else if (!document.body.dataset.lost) {
-        document.body.dataset.lost = 'yes';
-        say('misfit does not answer any more: start `misfit open` again and use the address that it prints.');
-      }
+      hindered(error);
     }
     document.body.dataset.ready = 'yes';
     await new Promise((go) => setTimeout(go, running ? 400 : document.hidden ? 6000 : 1500));
@@ -93,6 +109,7 @@ function showHead() {
   showVerdict(verdict ?? []);
   at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
   at('model').value = here.model;
+  addedTo = modelsSeen();
   const chosen = at('effect').value;
   const refused = effects.filter((one) => one.refused !== '');
   at('effect').replaceChildren(element('option', { value: '' }, 'an effect…'),
@@ -101,6 +118,10 @@ function showHead() {
       ...refused.map(({ effect, refused: why }) => element('option', { value: effect, disabled: true, title: why }, `${effect}: ${reason(why)}`))));
   if (chosen) at('effect').value = chosen;
 }
+
+/** By the effects that were added: what is added or removed is refused where another page has changed them meanwhile. */
+const modelsSeen = () => here.state.models.map((model) => model.added);
+let addedTo = [];
 
 /** On a phone the sentence and what is next; the rest opens. */
 function showVerdict(all) {
@@ -122,7 +143,7 @@ function reason(why) {
 }
 
 function showJob(job) {
-  const running = job.state === 'running', box = at('job'), focused = document.activeElement;
+  const running = job.state === 'running', focused = document.activeElement;
   const idle = (here.idle = !running && here.state.study.fault === null);
   for (const id of ['run', 'fit', 'discover']) at(id).disabled = !idle;
   at('add').disabled = !idle || at('effect').value === '';
@@ -130,35 +151,73 @@ function showJob(job) {
   at('stop').hidden = !running;
   at('stop').textContent = job.stopping ? 'Stop at once' : 'Stop';
   began.follow(job);
-  if (focused !== document.body && (focused.disabled || focused.hidden)) began.takeFocus(running);
-  at('command').hidden = box.hidden = job.state === 'none' || (!running && here.closed === job.number);
-  if (job.state === 'none') return;
-  at('command').textContent = job.command;
-  box.className = job.state;
-  box.dataset.state = job.state;
-  box.dataset.number = job.number;
-  if (!running && box.dataset.shown === `${job.number}`) return;
-  box.dataset.shown = running ? '' : `${job.number}`;
-  const end = { running: job.stopping ? 'stopping' : 'at work', done: 'done', stopped: 'stopped: what was finished is kept', failed: failure(job) };
-  const head = element('p', {}, element('b', {}, end[job.state]), ` · ${shown(job.seconds, 3)} s`);
-  if (running && job.work) head.append(` · ${job.work} `, job.part === null ? '' : element('progress', { value: job.part, max: 1 }),
-    job.left === null ? '' : ` at most ${shown(job.left, 2)} s left`);
-  if (!running) head.append(' ', element('button', { class: 'closes', title: 'Hide what the command said; it stays in session.sh', onclick: () => { box.hidden = at('command').hidden = true; here.closed = job.number; } }, 'Close'));
-  const open = box.querySelector('details')?.open ?? false;
-  const parts = [head];
-  if (!running && job.state === 'failed') parts.push(element('pre', { class: 'warning' }, job.notes.slice(-5).join('\n')));
-  if (job.notes.length > 0 || job.output !== '')
-    parts.push(element('details', { open }, element('summary', {}, 'What it says'), running ? '' : costs(job.costs), element('pre', {}, [...job.notes, job.output].join('\n'))));
-  if (running) parts.push(costs(job.costs));
-  box.replaceChildren(...parts);
+  jobBox.show(job, !running && here.closed === job.number);
+  if (focused === document.body || !(focused.disabled || focused.hidden)) return;
+  if (began.owns(job)) began.takeFocus(running);
+  else at('job').focus({ preventScroll: true }); // another page's: a key pressed here must not stop it
 }
+
+const setText = (node, text) => { if (node.textContent !== text) node.textContent = text; };
+
+/** Adds what has come: what was there, and is read, scrolled or chosen, stays. */
+function grow(node, text) {
+  if (text.startsWith(node.data)) node.appendData(text.slice(node.data.length));
+  else node.data = text;
+}
+
+/** What a command does and says, in nodes that stay. */
+class JobBox {
+  constructor() {
+    this.state = element('b');
+    this.doing = element('span');
+    this.progress = element('progress', { max: 1, 'aria-label': 'part that is done' });
+    this.left = element('span');
+    this.close = element('button', { class: 'closes', title: 'Hide what the command said; it stays in session.sh', onclick: () => { at('job').hidden = at('command').hidden = true; here.closed = this.number; } }, 'Close');
+    this.failure = element('pre', { class: 'warning' });
+    this.costs = element('div', { class: 'costs' });
+    this.notes = document.createTextNode('');
+    this.output = document.createTextNode('');
+    this.said = element('pre', { tabindex: 0 }, this.notes, this.output);
+    this.more = element('details', {}, element('summary', {}, 'What it says'), this.said);
+    at('job').append(element('p', {}, this.state, this.doing, this.progress, this.left, ' ', this.close), this.failure, this.more, this.costs);
+  }
+  show(job, closed) {
+    const running = job.state === 'running', box = at('job');
+    at('command').hidden = box.hidden = job.state === 'none' || closed;
+    if (job.state === 'none') return;
+    this.number = job.number;
+    setText(at('command'), job.command);
+    box.className = job.state;
+    Object.assign(box.dataset, { state: job.state, number: job.number });
+    const end = { running: job.stopping ? 'stopping' : 'at work', done: 'done', stopped: 'stopped: what was finished is kept', failed: failure(job) };
+    setText(this.state, end[job.state]);
+    setText(this.doing, ` · ${shown(job.seconds, 3)} s${running && job.work ? ` · ${job.work} ` : ''}`);
+    this.progress.hidden = !running || !job.work || job.part === null;
+    if (!this.progress.hidden) this.progress.value = job.part;
+    setText(this.left, running && job.work && job.left !== null ? ` at most ${shown(job.left, 2)} s left` : '');
+    this.close.hidden = running;
+    this.failure.hidden = job.state !== 'failed';
+    setText(this.failure, job.state === 'failed' ? job.notes.slice(-5).join('\n') : '');
+    this.more.hidden = job.notes.length === 0 && job.output === '';
+    grow(this.notes, job.notes.map((note) => `${note}\n`).join(''));
+    grow(this.output, job.output);
+    this.showCosts(job.costs, running);
+  }
+  /** Beside what it does while it runs, then in what it says. */
+  showCosts(traces, running) {
+    this.costs.replaceChildren(...costs(traces));
+    if (running && this.costs.parentNode !== at('job')) at('job').append(this.costs);
+    if (!running && this.costs.parentNode !== this.more) this.said.before(this.costs);
+  }
+}
+const jobBox = new JobBox();
 
 /** How the searches of a command go on: the last two, in one line. */
 function costs(traces) {
-  const out = element('div', { class: 'costs' });
+  const out = [];
   for (const trace of traces.slice(-2)) {
     if (trace.points.length < 2) continue;
-    out.append(element('figure', {}, sparkline(trace.points.map(([, value]) => value)),
+    out.push(element('figure', {}, sparkline(trace.points.map(([, value]) => value)),
       element('figcaption', {}, `${trace.work}: ${trace.what} ${shown(trace.points[0][1], 6)} → ${shown(trace.points.at(-1)[1], 6)} in ${trace.points.length} iterations`)));
   }
   return out;
@@ -177,6 +236,7 @@ function sparkline(values) {
 class Began {
   key = null;
   number = null;
+  asks = false; // misfit has not answered yet
   at = -Infinity; // when it was asked for
   constructor() {
     this.words = element('span', { 'aria-live': 'polite' });
@@ -209,13 +269,22 @@ class Began {
     this.key = key;
     this.at = performance.now();
     this.number = null;
+    this.asks = true;
     this.node.remove();
     this.place();
     this.say('asked for');
   }
+  answered(job) {
+    this.number = job.number;
+    this.asks = false;
+  }
   refused(error) {
+    this.asks = false;
     this.say(error.message, { bad: true });
     if (!this.button()) say(error);
+  }
+  owns(job) {
+    return this.asks || job.number === this.number;
   }
   follow(job) {
     if (job.number !== this.number || job.state === 'none') return;
@@ -244,11 +313,11 @@ async function stop(event) {
   }
 }
 
-// `key`: of the button; `more`: what the verb needs: { effect, at } to add, { rung } to remove.
+// `key`: of the button; `more`: what the verb needs: { effect, at, models } to add, { rung, models } to remove.
 async function start(key, verb, more = {}) {
   began.asked(key);
   try {
-    began.number = (await post('job', { verb, ...more })).number;
+    began.answered(await post('job', { verb, ...more }));
     await look();
   } catch (error) {
     began.refused(error);
@@ -258,10 +327,17 @@ async function start(key, verb, more = {}) {
 // ---- over time
 
 /** By the method that was chosen, by its name; of the last one until then, and where the model has none of that name. */
-const askForMotion = () => get('motion', { model: here.model, ...(here.method === null ? {} : { method: here.method }) });
+const askForMotion = () => kept('motion', { model: here.model, ...(here.method === null ? {} : { method: here.method }) });
 
-async function showMotion(motion = null) {
-  motion = here.motion = motion ?? await askForMotion();
+/** Of the method that was chosen; an answer that comes late is passed over. */
+let motionTurn = 0;
+async function showMotion() {
+  const mine = ++motionTurn, motion = await askForMotion();
+  if (mine === motionTurn) takeMotion(motion);
+}
+
+function takeMotion(motion) {
+  here.motion = motion;
   at('methods').hidden = motion.methods.length === 0;
   at('method').replaceChildren(...motion.methods.map((name) => element('option', { value: name }, name)));
   at('method').value = motion.methods[motion.method];
@@ -270,66 +346,89 @@ async function showMotion(motion = null) {
   at('experiments').hidden = names.length < 2;
   at('experiment').replaceChildren(...names.map((name) => element('option', { value: name }, name)));
   at('experiment').value = here.name;
-  drawTime();
+  showTime();
 }
 
 /** Marks and zoom are of one recording: they do not go with the choice of another one. */
 function chooseExperiment(name) {
   if (name === here.name) return;
   here.name = name;
+  film.t = null;
   time.zoom(null);
   unmark();
 }
 
+const channelsShown = () => here.motion.channels.filter((c) => c.experiment === here.name);
+
+/** Plots that show the same as before stay as they are. */
+let timeDrawn = [];
+function showTime() {
+  film.show(channelsShown());
+  const what = [here.motion, missing(), here.name];
+  if (what.some((one, k) => one !== timeDrawn[k])) drawTime();
+  timeDrawn = what;
+}
+
+/** Plots over time are drawn anew: the cursor stays where it is, the focus in its panel. */
+function drawnAnew(draw) {
+  const focused = document.activeElement?.closest('#time [data-plot]')?.dataset.plot, cursor = time.cursor();
+  draw();
+  if (cursor !== null) time.putBack(cursor);
+  if (focused) at('time').querySelector(`[data-plot="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+}
+
 function drawTime() {
-  for (const figure of here.timeFigures.splice(0)) figure.destroy();
-  here.force = null;
-  at('motion').replaceChildren();
-  const options = { group: time, title: false, caption: false };
-  const channels = here.motion.channels.filter((c) => c.experiment === here.name);
-  const force = missing();
-  const height = channels.length > 1 ? 0.45 : 0.7;
-  film.show(channels);
-  channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, height, xLabel: k === channels.length - 1,
-    oncursor: k === 0 ? (t) => film.point(t) : null })));
-  if (channels.length === 0) at('motion').append(element('p', { class: 'soft' },
-    here.motion.methods.length === 0 ? 'Nothing is fitted yet.' : 'This method does not predict the motion.'), blocks(here.motion.blocks));
-  drawForce(null);
+  drawnAnew(() => {
+    for (const figure of here.timeFigures.splice(0)) figure.destroy();
+    here.force = null;
+    const channels = channelsShown(), options = { group: time, title: false, caption: false, height: channels.length > 1 ? 0.45 : 0.7 };
+    at('motion').replaceChildren();
+    channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, key: `motion ${k}`, xLabel: k === channels.length - 1 })));
+    if (channels.length === 0) at('motion').append(element('p', { class: 'soft' },
+      here.motion.methods.length === 0 ? 'Nothing is fitted yet.' : 'This method does not predict the motion.'), blocks(here.motion.blocks));
+    putForce(here.added?.of === missing() ? here.added : null);
+  });
 }
 
 /** The missing force of the experiment that is shown, and its place among those of all. */
 const missing = () => here.where?.force.find((f) => f.experiment === here.name);
 const placeOfMissing = () => here.where.force.indexOf(missing());
 
-/** `added`: { name, figure } of a candidate, whose force stands in it, too. What is there goes when the new one stands: nothing jumps. */
-function drawForce(added) {
-  const before = [...at('force').children], old = here.force;
+const drawForce = (added) => drawnAnew(() => putForce(added));
+
+/** One scale for the missing force and all candidates beside it that are looked at. */
+const forceScales = { of: null, scales: null };
+function scalesOf(force) {
+  if (forceScales.of !== force) Object.assign(forceScales, { of: force, scales: new Map() });
+  return forceScales.scales;
+}
+
+/** `added`: of a candidate, whose force stands in it, too (here.added). What is there goes when the new one stands: nothing jumps. */
+function putForce(added) {
+  const before = [...at('force').children], old = here.force, force = missing();
   here.added = added;
   here.force = null;
-  if (missing()) {
+  if (force) {
     at('force').append(element('h3', {}, added ? `Force that is missing, ± 1 sigma, and (thick) what ${added.name} adds` : 'Force that is missing, ± 1 sigma'));
-    here.force = new Figure(at('force'), added?.figure ?? missing().figure, { group: time, title: false, caption: false, height: 0.5 });
+    here.force = new Figure(at('force'), added?.figure ?? force.figure, { group: time, title: false, caption: false, height: 0.5, key: 'force', scales: scalesOf(force) });
     here.timeFigures.push(here.force);
   }
   if (old) here.timeFigures.splice(here.timeFigures.indexOf(old), 1)[0].destroy();
   for (const node of before) node.remove();
 }
 
-/** The frame at the time cursor, with the marker as measured and as predicted. */
+/** The frame at the time cursor, or of a marked sample, with the markers as measured and as predicted. */
 class Film {
   place = -1; // among the films of the study; −1: this experiment has none
-  t = null;
+  t = null; // of the cursor
+  chosen = null; // of a marked sample
+  marks = [];
   busy = false;
   constructor() {
     at('film').addEventListener('toggle', () => this.ask());
   }
-  /** Where the marker is: P_y, P_z from the middle of the picture, to the left and downwards, or column and row. */
   show(channels) {
-    const named = (name) => channels.find((c) => c.name === name)?.figure;
-    const fromMiddle = named('P_y') && named('P_z');
-    this.across = fromMiddle ? named('P_y') : named('x_px');
-    this.down = fromMiddle ? named('P_z') : named('y_px');
-    this.pixel = (x, y, { width, height }) => (fromMiddle ? [width / 2 - x + 0.5, height / 2 + y + 0.5] : [x + 0.5, y + 0.5]);
+    this.pairs = markersIn(channels);
     this.place = here.state.films.indexOf(here.name);
     at('film').hidden = this.place < 0;
     this.asked = null;
@@ -338,65 +437,98 @@ class Film {
   }
   point(t) {
     this.t = t;
+    this.chosen = null;
     this.ask();
+  }
+  /** Of what is marked the sample nearest to the cursor is looked at, until the cursor moves on. */
+  mark({ intervals, times }) {
+    this.marks = intervals;
+    this.chosen = intervals.length === 0 ? null : times.length > 0 ? times[nearest(times, this.t ?? 0)] : within(intervals[0], this.t ?? 0);
+    this.ask();
+    this.tell();
   }
   /** One question at a time; the last place that was pointed at is asked for in the end. */
   async ask() {
     if (this.busy || this.place < 0 || !at('film').open) return;
     this.busy = true;
     try {
-      while (this.asked !== `${this.place} ${this.t}`) {
-        const t = this.t;
+      for (let t = this.chosen ?? this.t; t !== null && this.asked !== `${this.place} ${t}`; t = this.chosen ?? this.t) {
         this.asked = `${this.place} ${t}`;
         this.draw(await get('frame', { film: this.place, t }));
+        this.seen = t;
+        this.tell();
       }
     } catch (error) {
       at('frame-words').textContent = error.message;
     }
     this.busy = false;
   }
+  /** Whether the frame is of a marked sample. */
+  tell() {
+    at('frame-badge').hidden = !this.marks.some(([from, to]) => from <= this.seen && this.seen <= to);
+  }
   draw(frame) {
     at('frame').src = `data:image/jpeg;base64,${frame.jpeg}`;
     at('marks').setAttribute('viewBox', `0 0 ${frame.width} ${frame.height}`);
-    const [measured, predicted] = ['measured', 'predicted'].map((kind) => this.marker(kind, frame)), size = 0.02 * frame.width;
-    const [circle, cross] = at('marks').children;
-    for (const [node, place] of [[circle, measured], [cross, predicted]]) node.style.display = place ? '' : 'none';
-    if (measured) for (const [key, value] of [['cx', measured[0]], ['cy', measured[1]], ['r', size]]) circle.setAttribute(key, value);
-    if (predicted) cross.setAttribute('d', `M${predicted[0] - size} ${predicted[1]}h${2 * size}M${predicted[0]} ${predicted[1] - size}v${2 * size}`);
-    const said = [`Frame at ${timeShown(frame.t)} s`];
-    if (measured) said.push('yellow: measured');
-    if (predicted) said.push(`blue: predicted by ${here.motion.methods[here.motion.method]}`);
-    at('frame-words').textContent = said.join(' · ');
+    this.putNodes();
+    const said = new Set([`Frame at ${timeShown(frame.t)} s`]), size = 0.02 * frame.width;
+    this.pairs.forEach((pair, k) => {
+      const [measured, predicted] = ['measured', 'predicted'].map((kind) => placeOf(pair, kind, frame)), [circle, cross] = this.nodes[k];
+      for (const [node, place] of [[circle, measured], [cross, predicted]]) node.style.display = place ? '' : 'none';
+      if (measured) for (const [key, value] of [['cx', measured[0]], ['cy', measured[1]], ['r', size]]) circle.setAttribute(key, value);
+      if (predicted) cross.setAttribute('d', `M${predicted[0] - size} ${predicted[1]}h${2 * size}M${predicted[0]} ${predicted[1] - size}v${2 * size}`);
+      if (measured) said.add('yellow: measured');
+      if (predicted) said.add(`blue: predicted by ${here.motion.methods[here.motion.method]}`);
+    });
+    at('frame-words').textContent = [...said].join(' · ');
   }
-  /** [px] null: there is none at the frame's time. */
-  marker(kind, frame) {
-    const [x, y] = [this.across, this.down].map((figure) => figure && valueAt(figure, kind, frame.t));
-    return x === undefined || y === undefined ? null : this.pixel(x, y, frame);
+  /** A circle and a cross for each marker. */
+  putNodes() {
+    this.nodes ??= [[...at('marks').children]];
+    while (this.nodes.length < this.pairs.length) this.nodes.push(this.nodes[0].map((node) => node.cloneNode()));
+    at('marks').replaceChildren(...this.nodes.slice(0, Math.max(this.pairs.length, 1)).flat());
+    for (const node of this.nodes[0]) node.style.display = 'none';
   }
 }
+
+const within = ([from, to], t) => Math.min(Math.max(t, from), to);
+
+/** Where markers are: P_y, P_z from the middle of the picture, to the left and downwards; or x_px, y_px, column and row, of several x_px_NAME. */
+function markersIn(channels) {
+  const figures = new Map(channels.map((c) => [c.name, c.figure])), out = [];
+  const add = (across, down, pixel) => { if (figures.has(across) && figures.has(down)) out.push({ figures: [figures.get(across), figures.get(down)], pixel }); };
+  add('P_y', 'P_z', (x, y, { width, height }) => [width / 2 - x + 0.5, height / 2 + y + 0.5]);
+  for (const name of figures.keys()) if (/^x_px(_|$)/.test(name)) add(name, name.replace('x', 'y'), (x, y) => [x + 0.5, y + 0.5]);
+  return out;
+}
+
+/** [px] null: there is none at the frame's time. */
+function placeOf({ figures, pixel }, kind, frame) {
+  const [x, y] = figures.map((figure) => valueAt(figure, kind, frame.t));
+  return x === undefined || y === undefined ? null : pixel(x, y, frame);
+}
+
 const film = new Film();
+time.oncursor = (t) => film.point(t);
 
-/** Of the series of that kind in the first panel, held out or not; undefined: it has none there. */
-function valueAt(figure, kind, t) {
-  for (const s of figure.panels[0].series) {
-    const x = figure.xs[s.x], k = nearest(x, t);
-    if (s.key.startsWith(kind) && s.y[k] !== null && s.y[k] !== undefined) return s.y[k];
-  }
-  return undefined;
-}
-
-function mark(intervals, text, fixed) {
+/** `fixed`: it stays when the mouse goes on. Nothing, and not fixed: what is fixed is seen again. */
+function mark(marked, fixed) {
   if (fixed) {
-    Object.assign(here, { fixed: intervals, marked: text });
+    here.fixed = marked;
     time.begun = undefined;
   }
-  const shownNow = intervals.length > 0 || fixed ? intervals : here.fixed;
-  time.setMarks(shownNow);
-  at('marked').textContent = at('marked').title = intervals.length > 0 ? text : here.marked;
-  at('unmark').hidden = here.fixed.length === 0;
-  at('holdout').hidden = !live || here.fixed.length !== 1 || here.model !== 0 || !here.state.settable.experiments.includes(here.name);
-  at('time').dataset.marks = shownNow.length;
+  const seen = marked.intervals.length > 0 || fixed ? marked : here.fixed;
+  time.setMarks(seen.intervals);
+  film.mark(seen);
+  at('marked').textContent = at('marked').title = seen.text;
+  at('time').dataset.marks = seen.intervals.length;
+  offerWithMarks();
   markPoints();
+}
+function offerWithMarks() {
+  const { intervals } = here.fixed;
+  at('unmark').hidden = intervals.length === 0;
+  at('holdout').hidden = !live || intervals.length !== 1 || here.model !== 0 || !here.state.settable.experiments.includes(here.name);
 }
 function unmark() {
   for (const figure of here.figures) {
@@ -404,7 +536,8 @@ function unmark() {
     figure.cells = figure.boxes = figure.fixedCells = figure.fixedBoxes = undefined;
     figure.highlight();
   }
-  mark([], '', true);
+  here.picked = null;
+  mark(nothingMarked, true);
 }
 /** As exactly as what is seen of the motion tells. */
 function timeShown(t) {
@@ -415,7 +548,7 @@ time.onzoom = (window) => { at('time').dataset.window = window === null ? '' : w
 time.onbegun = (t) => { at('marked').textContent = `Marked from ${timeShown(t)} s: m again where it ends`; };
 /** The ends of an interval, with the digits by which they differ. */
 const endsShown = (from, to) => [from, to].map((end) => shownPlace(end, 10 * (to - from))).join(' to ');
-time.onmark = ([[from, to]]) => mark([[from, to]], `Marked: ${endsShown(from, to)} s`, true);
+time.onmark = ([[from, to]]) => mark({ intervals: [[from, to]], times: [], text: `Marked: ${endsShown(from, to)} s` }, true);
 
 /** Two times, to a millionth of what lies between them: a mouse knows no more. */
 function written([from, to]) {
@@ -438,38 +571,31 @@ function markPoints() {
 
 // ---- views
 
-function draw(parent, figure, options) {
-  const out = new Figure(parent, figure, options);
+/** As it was zoomed before, in this model or another. */
+function draw(parent, figure, options = {}) {
+  const { name } = figure, zoom = here.zooms.get(name);
+  const out = new Figure(parent, figure, { ...options, onzoom: (window) => (window ? here.zooms.set(name, window) : here.zooms.delete(name)) });
   here.figures.push(out);
+  if (zoom && out.reaches(zoom)) out.zoom(zoom);
+  return out;
+}
+
+/** Something to unfold, which is found unfolded again where the view is drawn anew. */
+function folded(summary, content, properties = {}) {
+  const key = `${here.tab} ${summary}`, out = element('details', { ...properties, open: here.open.has(key) }, element('summary', { 'data-fold': key }, summary), content);
+  out.addEventListener('toggle', () => (out.open ? here.open.add(key) : here.open.delete(key)));
   return out;
 }
 const nothing = (parent, text) => parent.append(element('p', { class: 'soft' }, text));
 
-/** The pair that a map is over, or the one quantity: its samples, in the order of their times. */
+/** Of a quantity that a map is over, in the order of their times; null: this experiment has none. */
 async function samplesOf(quantity) {
-  const force = here.where.force, experiment = Math.max(force.findIndex((f) => f.experiment === here.name), 0);
+  const force = here.where.force, experiment = force.findIndex((f) => f.experiment === here.name);
   const k = force[experiment]?.quantities.findIndex((q) => q.name === quantity) ?? -1;
-  if (k >= 0) return get('samples', { model: here.model, experiment, quantity: k });
-  return null;
+  return k < 0 ? null : kept('samples', { model: here.model, experiment, quantity: k });
 }
 
-/** Times whose samples satisfy `inside`, as intervals. */
-function intervals(t, inside) {
-  const out = [];
-  const half = t.length > 1 ? 0.5 * (t[t.length - 1] - t[0]) / (t.length - 1) : 0;
-  let count = 0;
-  for (let i = 0; i < t.length; ++i) {
-    if (!inside(i)) continue;
-    ++count;
-    const last = out[out.length - 1];
-    if (last && t[i] - half <= last[1] + half) last[1] = t[i] + half;
-    else out.push([t[i] - half, t[i] + half]);
-  }
-  return { out, count };
-}
-
-async function showWhere(view) {
-  const where = here.where;
+async function showWhere(view, where, current) {
   if (!where) return nothing(view, 'This model is not diagnosed yet. Discover (or misfit diagnose) does it; Run does it only if filter_error is among the methods of the study.');
   const conclusions = where.blocks.find((b) => b.kind === 'list');
   if (conclusions) view.append(blocks([conclusions]));
@@ -480,53 +606,90 @@ async function showWhere(view) {
     words(map.label ?? map.xLabel), map.yLabel ? ' and ' : '', map.yLabel ? words(map.yLabel) : '', ' ', element('small', {}, `p = ${shown(map.p, 2)}`)));
   list.append(...buttons);
   view.append(element('h3', {}, 'Missing force against…'), list, body);
-  const more = element('details', {}, element('summary', {}, 'Tests of the residuals'));
+  const tests = element('div'), more = folded('Tests of the residuals', tests);
   more.addEventListener('toggle', () => {
-    if (!more.open || more.dataset.drawn) return;
-    more.dataset.drawn = 'yes';
-    for (const figure of where.whiteness) draw(more, figure);
-    more.append(blocks(where.blocks.filter((b) => b !== conclusions && b.kind !== 'figures')));
+    if (!more.open || tests.hasChildNodes() || !current()) return;
+    for (const figure of where.whiteness) draw(tests, figure);
+    tests.append(blocks(where.blocks.filter((b) => b !== conclusions && b.kind !== 'figures')));
   });
   view.append(more);
   let turn = 0;
   async function show(k) {
-    const mine = ++turn;
+    const mine = ++turn, still = () => mine === turn && current();
     here.map = all[k].figure.name;
     buttons.forEach((b, n) => b.setAttribute('aria-pressed', n === k));
     for (const figure of here.figures.splice(0)) if (body.contains(figure.node)) figure.destroy(); else here.figures.push(figure);
     here.samples = null;
     body.replaceChildren();
-    if (where.maps.includes(all[k])) await showMap(body, all[k], () => mine === turn);
-    else await showPair(body, all[k], () => mine === turn);
+    await (where.maps.includes(all[k]) ? showMap : showPair)(body, all[k], still);
   }
   const before = all.findIndex((map) => map.figure.name === here.map);
   if (all.length > 0) await show(Math.max(before, 0));
 }
 
-async function showMap(body, map, current) {
-  const samples = map.quantity === 'time' ? null : await samplesOf(map.quantity).catch(() => null);
-  if (!current()) return;
-  const places = map.figure.xs[map.figure.panels[0].series.find((s) => s.style === 'error_bars').x];
-  const edge = (k) => (k < 0 ? places[0] - 0.5 * (places[1] - places[0]) : k >= places.length - 1
-    ? places[places.length - 1] + 0.5 * (places[places.length - 1] - places[places.length - 2]) : 0.5 * (places[k] + places[k + 1]));
-  const t = samples?.t ?? here.timeFigures.at(-1)?.figure.xs[0] ?? [], values = samples?.values ?? (map.quantity === 'time' ? t : []);
-  const unit = plain(map.figure.xUnit);
-  let hot = null;
-  const choose = (figure, x, fixed) => {
-    const k = nearest(places, x), from = edge(k - 1), to = edge(k);
-    if (hot === k && !fixed) return;
-    hot = k;
-    figure.cells = [[from, to]];
-    if (fixed) figure.fixedCells = figure.cells;
-    figure.highlight();
-    const { out, count } = intervals(t, (i) => values[i] !== null && values[i] >= from && values[i] < to);
-    mark(out, `Marked: ${count} samples with ${map.quantity} from ${endsShown(from, to)} ${unit}`, fixed);
+/** Why pointing at a map marks nothing; '': it does. */
+function withoutSamples(asked) {
+  const failed = asked.find((one) => one.status === 'rejected');
+  if (!live) return failed ? 'Its samples are not at hand here; `misfit open` marks them in the motion.' : '';
+  if (failed) return `Its samples cannot be shown: ${failed.reason.message}`;
+  return asked.every((one) => one.value === null) ? 'This experiment has no samples of it.' : '';
+}
+
+/** Pointing at a cell of a map marks its samples; a click, or a key, keeps them marked. `cellAt(x, y)`: undefined: there is none; `emphasised(cell)`:
+    what stands out in the figure; `said(cell, count)`: in words. */
+function pointing(map, samples, { cellAt, emphasised, said }) {
+  let hot;
+  const emphasise = (view, what) => {
+    Object.assign(view, what);
+    view.highlight();
   };
-  const figure = draw(body, map.change ?? map.figure, { height: 0.8,
-    onpoint: (plot, x) => choose(plot.view, x, false), onpick: (plot, x) => choose(plot.view, x, true), onkeypoint: (plot, x) => choose(plot.view, x, true),
-    onleave: (plot) => { hot = null; plot.view.cells = plot.view.fixedCells ?? []; plot.view.highlight(); mark([], '', false); } });
-  figure.node.append(element('p', { class: 'soft' }, samples || map.quantity === 'time'
-    ? 'Point at a place: its samples are marked in the motion. A click keeps them marked.' : 'Its samples are not at hand here; `misfit open` marks them in the motion.'));
+  const choose = (view, x, y, fixed) => {
+    const cell = cellAt(x, y);
+    if (cell === undefined || (cell === hot && !fixed)) return;
+    hot = cell;
+    const what = emphasised(cell);
+    emphasise(view, what);
+    if (fixed) {
+      view.fixedCells = what.cells;
+      view.fixedBoxes = what.boxes;
+    }
+    const { times, intervals } = samples?.at(cell) ?? nothingMarked;
+    if (samples) mark({ times, intervals, text: said(cell, times.length) }, fixed);
+    if (fixed) here.picked = { map: map.figure.name, ...what };
+  };
+  const fixed = (plot, x, y) => choose(plot.view, x, y, true);
+  return { onpoint: (plot, x, y) => choose(plot.view, x, y, false), onpick: fixed, onkeypoint: fixed,
+    onleave: (plot) => {
+      hot = undefined;
+      emphasise(plot.view, { cells: plot.view.fixedCells, boxes: plot.view.fixedBoxes });
+      mark(nothingMarked, false);
+    } };
+}
+
+/** The cell that is marked already, in a map that is drawn anew. */
+function emphasisePicked(figure, map) {
+  if (here.picked?.map !== map.figure.name) return;
+  const { cells, boxes } = here.picked;
+  Object.assign(figure, { cells, boxes, fixedCells: cells, fixedBoxes: boxes });
+  figure.highlight();
+}
+
+async function showMap(body, map, current) {
+  const asked = await Promise.allSettled(map.quantity === 'time' ? [] : [samplesOf(map.quantity)]);
+  if (!current()) return;
+  const samples = asked[0]?.value ?? null;
+  const places = map.figure.xs[map.figure.panels[0].series.find((s) => s.style === 'error_bars').x], n = places.length;
+  const edges = places.map((place, k) => (k === 0 ? place - 0.5 * (places[1] - place) : 0.5 * (places[k - 1] + place)));
+  edges.push(places[n - 1] + 0.5 * (places[n - 1] - places[n - 2]));
+  const t = samples?.t ?? here.timeFigures.at(-1)?.figure.xs[0] ?? [], values = samples?.values ?? t, unit = plain(map.figure.xUnit);
+  const byCell = samples || map.quantity === 'time' ? new SamplesByCell(t, (i) => rangeOf(edges, values[i])) : null;
+  const figure = draw(body, map.change ?? map.figure, { height: 0.8, ...pointing(map, byCell, {
+    cellAt: (x) => nearest(places, x),
+    emphasised: (k) => ({ cells: [[edges[k], edges[k + 1]]] }),
+    said: (k, count) => `Marked: ${count} samples with ${map.quantity} from ${endsShown(edges[k], edges[k + 1])} ${unit}` }) });
+  emphasisePicked(figure, map);
+  figure.node.append(element('p', { class: 'soft' }, byCell
+    ? 'Point at a place: its samples are marked in the motion. A click keeps them marked.' : withoutSamples(asked)));
   if (samples) {
     here.samples = { t: samples.t, figure: draw(body, samples.figure, { height: 0.7 }) };
     markPoints();
@@ -534,32 +697,26 @@ async function showMap(body, map, current) {
 }
 
 async function showPair(body, map, current) {
-  const [first, second] = await Promise.all([samplesOf(map.x), samplesOf(map.y)].map((p) => p.catch(() => null)));
+  const asked = await Promise.allSettled([samplesOf(map.x), samplesOf(map.y)]);
   if (!current()) return;
+  const [first, second] = asked.map((one) => one.value ?? null);
   const timeOf = (name, other) => (name === 'time' && other ? { t: other.t, values: other.t } : null); // a sample's own
   const x = first ?? timeOf(map.x, second), y = second ?? timeOf(map.y, first);
-  const cells = map.figure.panels[0].series[0], xs = map.figure.xs[cells.x];
-  let hot = null;
-  const choose = (figure, px, py, fixed) => {
-    const k = xs.findIndex((v, i) => Math.abs(px - v) <= cells.lo[i] && Math.abs((py ?? cells.y[i]) - cells.y[i]) <= cells.hi[i]);
-    if (k < 0 || (hot === k && !fixed)) return;
-    hot = k;
-    const box = [xs[k] - cells.lo[k], xs[k] + cells.lo[k], cells.y[k] - cells.hi[k], cells.y[k] + cells.hi[k]];
-    figure.boxes = [box];
-    if (fixed) figure.fixedBoxes = figure.boxes;
-    figure.highlight();
-    if (!x || !y) return;
-    const { out, count } = intervals(x.t, (i) => x.values[i] !== null && y.values[i] !== null && x.values[i] >= box[0] && x.values[i] < box[1] &&
-      y.values[i] >= box[2] && y.values[i] < box[3]);
-    mark(out, `Marked: ${count} samples with ${map.x} from ${endsShown(box[0], box[1])} ${plain(map.figure.xUnit)} and ${map.y} from ` +
-      `${endsShown(box[2], box[3])} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`, fixed);
-  };
-  draw(body, map.figure, { height: 0.9, onpoint: (plot, px, py) => choose(plot.view, px, py, false), onpick: (plot, px, py) => choose(plot.view, px, py, true),
-    onleave: (plot) => { hot = null; plot.view.boxes = plot.view.fixedBoxes ?? []; plot.view.highlight(); mark([], '', false); } });
+  const cells = new PairCells(map.figure);
+  const byCell = x && y ? new SamplesByCell(x.t, (i) => (x.values[i] === null || y.values[i] === null ? undefined : cells.at(x.values[i], y.values[i]))) : null;
+  const figure = draw(body, map.figure, { height: 0.9, ...pointing(map, byCell, {
+    cellAt: (px, py) => cells.at(px, py),
+    emphasised: (k) => ({ boxes: [cells.boxes[k]] }),
+    said: (k, count) => {
+      const box = cells.boxes[k];
+      return `Marked: ${count} samples with ${map.x} from ${endsShown(box[0], box[1])} ${plain(map.figure.xUnit)} and ${map.y} from ` +
+        `${endsShown(box[2], box[3])} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`;
+    } }) });
+  emphasisePicked(figure, map);
+  if (!byCell) figure.node.append(element('p', { class: 'soft' }, withoutSamples(asked)));
 }
 
-async function showCandidates(view) {
-  const found = await get('candidates', { model: here.model });
+function showCandidates(view, found) {
   if (!found) return nothing(view, 'Nobody has asked yet which effect is missing: Discover ranks them.');
   const last = here.model === here.state.models.length - 1;
   const begin = found.blocks.findIndex((b) => b.kind !== 'heading' && b.kind !== 'paragraph');
@@ -571,14 +728,15 @@ async function showCandidates(view) {
   if (table) view.append(candidateTable(table, found.rows, last));
   if (found.figure) draw(view, found.figure, { height: 0.85 });
   const rest = found.blocks.filter((b) => !lead.includes(b) && b !== table && b.kind !== 'figures' && !(b.kind === 'heading' && b.level === 1));
-  view.append(element('details', {}, element('summary', {}, 'Remarks, reasons and what was tried'), blocks(rest)));
+  view.append(folded('Remarks, reasons and what was tried', blocks(rest)));
 }
 
 /** Of a force or an error that no named effect describes: it can stay in the model as a curve of a quantity. */
 function asCurve(unknown) {
+  const models = modelsSeen();
   const button = (one) => element('button', { class: 'adds', 'data-effect': one.effect, 'data-key': `add ${one.name}`, disabled: !here.idle,
     title: `misfit add … ${[one.effect, ...one.at].join(' --at=')}`,
-    onclick: () => start(`add ${one.name}`, 'add', { effect: one.effect, at: one.at }) }, `Add ${one.name}`);
+    onclick: () => start(`add ${one.name}`, 'add', { effect: one.effect, at: one.at, models }) }, `Add ${one.name}`);
   return element('p', { class: 'unknown' }, 'No effect of the list describes it. Added as a curve of one quantity, it takes over what no formula does: ',
     ...unknown.map(button));
 }
@@ -588,51 +746,59 @@ class AddedForces {
   kept = null;
   turn = 0;
   offer(line, cell, row) {
-    const button = element('button', { class: 'shows', 'aria-pressed': 'false', title: 'Show over time the force that it adds' }, ...cell.childNodes);
+    const button = element('button', { class: 'shows', 'aria-pressed': 'false', 'data-candidate': row.name, title: 'Show over time the force that it adds' }, ...cell.childNodes);
     cell.replaceChildren(button);
     const own = { button, name: row.name, candidate: row.candidate };
     line.addEventListener('mouseenter', () => this.show(own));
     line.addEventListener('mouseleave', () => this.show(this.kept));
-    button.addEventListener('click', () => {
-      this.kept?.button.setAttribute('aria-pressed', 'false');
-      this.kept = this.kept === own ? null : own;
-      button.setAttribute('aria-pressed', this.kept === own);
-      this.show(this.kept);
-    });
+    button.addEventListener('click', () => this.keep(this.kept === own ? null : own));
+    if (row.name === here.candidate) this.keep(own);
+  }
+  keep(own) {
+    this.kept?.button.setAttribute('aria-pressed', 'false');
+    own?.button.setAttribute('aria-pressed', 'true');
+    this.kept = own;
+    here.candidate = own?.name ?? null;
+    this.show(own);
   }
   async show(own) {
-    const mine = ++this.turn, { model, name } = here;
-    const figure = own && missing() ? await get('added', { model: here.model, experiment: placeOfMissing(), candidate: own.candidate }).catch(() => null) : null;
-    const shown = model === here.model && name === here.name && here.tab === 'candidates' && own?.button.isConnected !== false;
-    if (mine === this.turn && shown) drawForce(figure ? { name: own.name, figure } : null);
+    const mine = ++this.turn, of = missing();
+    const figure = own && of ? await kept('added', { model: here.model, experiment: placeOfMissing(), candidate: own.candidate }).catch(() => null) : null;
+    const shown = of === missing() && here.tab === 'candidates' && own?.button.isConnected !== false;
+    if (mine === this.turn && shown && (figure || here.added)) drawForce(figure ? { name: own.name, figure, of } : null);
   }
 }
 
 function candidateTable(table, rows, last) {
-  const most = 12; // rows to begin with
+  const most = 12, models = modelsSeen(); // rows to begin with
   const heading = (n) => plain(table.columns[n].heading), empty = (n) => table.rows.every((row) => plain(row[n]) === '–');
   const columns = table.columns.map((_, n) => n).filter((n) => !['rank', 'accepted'].includes(heading(n)) && !empty(n));
   const side = (n) => (table.columns[n].right ? 'number' : null);
   const head = element('tr', {}, element('td'), ...columns.map((n) => element('th', { scope: 'col', class: side(n) }, words(table.columns[n].heading))));
-  const body = element('tbody'), pointing = new AddedForces();
+  const body = element('tbody'), added = new AddedForces();
   rows.forEach((row, k) => {
     const button = live && row.addable && last
       ? element('button', { class: 'adds' + (row.accepted ? ' main' : ''), 'data-effect': row.effect, 'data-key': `add ${row.name}`,
           title: `misfit add … ${[row.effect, ...row.at].join(' --at=')}`, disabled: !here.idle,
-          onclick: () => start(`add ${row.name}`, 'add', { effect: row.effect, at: row.at }) }, 'Add') : '';
+          onclick: () => start(`add ${row.name}`, 'add', { effect: row.effect, at: row.at, models }) }, 'Add') : '';
     const more = k >= most ? ' more' : '';
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
       ...columns.map((n) => element('td', { class: side(n), 'data-label': heading(n) === 'effect' ? null : heading(n) }, breakable(table.rows[k][n]))));
-    if (row.force) pointing.offer(line, line.children[1], row);
+    if (row.force) added.offer(line, line.children[1], row);
     body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
   });
-  const all = element('table', { id: 'candidates' }, element('thead', {}, head), body);
-  const rest = rows.length > most ? element('button', { onclick: () => { all.classList.add('all'); rest.remove(); } }, `All ${rows.length}`) : null;
+  const all = element('table', { id: 'candidates', class: here.allCandidates && 'all' }, element('thead', {}, head), body);
+  const showRest = () => {
+    here.allCandidates = true;
+    all.classList.add('all');
+    rest.remove();
+  };
+  const rest = rows.length > most && !here.allCandidates ? element('button', { onclick: showRest }, `All ${rows.length}`) : null;
+  if (here.added && !added.kept) drawForce(null); // it is of a list that is not there any more
   return element('div', {}, fittedTable(all), rest);
 }
 
-async function showCurves(view) {
-  const curves = await get('curves', { model: here.model });
+function showCurves(view, curves) {
   if (curves.figures.length === 0) nothing(view, 'This model has no curves; its parameters:');
   const figures = curves.figures.map((figure) => draw(view, figure, { height: 0.8 }));
   figures.forEach((figure, k) => roughnessOf(curves.roughness.filter((path) => path.curves[0].figure === k), figures, figure.node));
@@ -652,7 +818,10 @@ function roughnessOf(paths, figures, parent) {
   const setting = live && here.model === 0 && here.state.study.fault === null && here.state.settable.curves.some((c) => c.name === path.curve);
   const key = `slider ${path.curve}`;
   const set = setting ? element('button', { class: 'sets', 'data-key': key, disabled: !here.idle, title: 'writes it into the study; Run refits',
-    onclick: () => start(key, 'set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) }) }, 'Set') : null;
+    onclick: () => {
+      slider.removeAttribute('data-changed'); // it is in the study now
+      start(key, 'set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) });
+    } }, 'Set') : null;
   const methods = element('select', { 'aria-label': 'method', hidden: paths.length < 2, onchange: () => { path = paths[methods.value]; begin(); } },
     ...paths.map((p, k) => element('option', { value: k, selected: p === path }, p.method)));
   const used = () => nearest(path.roughness, path.used);
@@ -665,14 +834,15 @@ function roughnessOf(paths, figures, parent) {
   const value = () => Math.exp(between(path.roughness.map(Math.log), mixed));
   function move() {
     const asFitted = slider.valueAsNumber === used();
+    slider.toggleAttribute('data-changed', !asFitted);
     for (const figure of figures) figure.overlay = (figure.overlay ?? []).filter((s) => s.of !== slider); // other curves keep theirs
     for (const c of asFitted ? [] : path.curves) {
-      const y = between(c.values, (a, b, share) => a.map((v, i) => mixed(v, b[i], share)));
+      const y = between(c.values, (a, b, share) => a.map((v, i) => (v === null || b[i] === null ? null : mixed(v, b[i], share))));
       figures[c.figure]?.overlay.push({ of: slider, x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
     }
-    for (const figure of figures) figure.redraw();
+    for (const figure of figures) figure.redrawOver();
     const support = between(path.support, mixed), freedom = path.freedom && `; ${path.freedom} effective degrees of freedom`;
-    said.replaceChildren(asFitted ? '' : 'Black: ', `roughness λ = ${shown(value(), 3)} `, words(path.unit), asFitted
+    said.replaceChildren(asFitted ? '' : 'Thick line: ', `roughness λ = ${shown(value(), 3)} `, words(path.unit), asFitted
       ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}${freedom}`
       : `, ${shown(value() / path.used, 2)} times as fitted; ${support < 0 ? 'less' : 'more'} likely by ${
         shown(Math.abs(support), 2)} (log marginal likelihood). All other unknowns follow (linearised).`);
@@ -695,111 +865,175 @@ function settings() {
     element('td', {}, free ? 'estimated' : 'fixed'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, 'data-key': `free ${name}`, disabled: !here.idle,
       onclick: () => set('free', name, `${!free}`) }, free ? 'Fix' : 'Estimate'))));
   for (const { name, label, unit, roughness } of here.state.settable.curves) {
-    const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}` });
+    const box = element('input', { value: roughness, size: 12, 'aria-label': `roughness of ${name}`, 'data-box': name, oninput: () => box.toggleAttribute('data-changed', box.value !== roughness) });
+    const setIt = () => {
+      box.removeAttribute('data-changed');
+      set('roughness', name, box.value.trim());
+    };
     rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), '], larger: smoother'), element('td', {}, box), element('td', {},
       element('button', { class: 'sets', 'data-roughness': name, 'data-key': `roughness ${name}`, title: 'auto, or a number of at least 0', disabled: !here.idle,
-        onclick: () => set('roughness', name, box.value.trim()) }, 'Set'))));
+        onclick: setIt }, 'Set'))));
   }
-  return element('details', { id: 'settings', open: here.settingsOpen, ontoggle: (event) => (here.settingsOpen = event.target.open) }, element('summary', {}, 'Fix or estimate a parameter, change a roughness'), fittedTable(element('table', {}, element('tbody', {}, ...rows))),
+  const content = element('div', {}, fittedTable(element('table', {}, element('tbody', {}, ...rows))),
     element('p', { class: 'soft' }, 'A change is written into the study; Run makes the results anew.'));
+  return folded('Fix or estimate a parameter, change a roughness', content, { id: 'settings' });
 }
 
-async function showCalibration(view) {
-  const calibration = await get('calibration');
+function showCalibration(view, calibration) {
   if (!calibration) return nothing(view, 'This study has no calibrated camera.');
   view.append(blocks(calibration.blocks.filter((b) => b.kind !== 'heading' || b.level !== 1), { figures: (name, parent) => calibration.figures.forEach((f) => draw(parent, f)) }));
 }
 
-async function showLadder(view) {
-  const ladder = await get('ladder');
+function showLadder(view, ladder) {
   if (!ladder) return nothing(view, 'The ladder begins when an effect is added: each added effect is a rung.');
   const choice = element('div', { class: 'rungs', role: 'group', 'aria-label': 'Rungs' }, ...ladder.rungs.map((rung) => {
     const k = here.state.models.findIndex((m) => m.id === rung.id);
-    return element('button', { 'aria-pressed': `${k === here.model}`, 'data-rung': rung.id, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
+    return element('button', { 'aria-pressed': `${k === here.model}`, 'data-rung': rung.id, disabled: k < 0, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
   }));
   view.append(element('p', { class: 'soft' }, 'A click shows the results of that model everywhere on this page.'), choice);
   draw(view, ladder.figure, { height: 0.75 });
   const current = ladder.rungs.find((rung) => rung.id === here.state.models[here.model].id), last = ladder.rungs[ladder.rungs.length - 1];
   if (current) view.append(element('h3', {}, `Rung ${current.id}`), blocks(current.blocks));
   if (live && current && current.added !== '') {
-    const above = last === current ? 'this rung' : 'this rung and those above it', key = `remove ${current.id}`;
+    const above = last === current ? 'this rung' : 'this rung and those above it', key = `remove ${current.id}`, models = modelsSeen();
     view.append(element('p', {}, askingButton({ class: 'removes', title: `misfit remove … ${current.id}`, 'data-key': key, disabled: !here.idle }, `Remove ${above}`,
       { question: `Take ${above} off the ladder? What was computed stays in the run folder.`, yes: 'Remove', no: 'Keep' },
-      () => start(key, 'remove', { rung: `${current.id}` }))));
+      () => start(key, 'remove', { rung: `${current.id}`, models }))));
   }
-  view.append(element('details', {}, element('summary', {}, 'All rungs in numbers'), blocks(ladder.blocks.filter((b) => b.kind !== 'figures'))));
+  view.append(folded('All rungs in numbers', blocks(ladder.blocks.filter((b) => b.kind !== 'figures'))));
 }
 
-async function showCommands(view) {
-  const { text } = await get('session');
+function showCommands(view, text) {
   view.append(element('p', {}, 'Every click above is a command. They stand in session.sh of the run folder, ', element('code', {}, here.state.study.folder),
     '; sh session.sh does them again.'));
   view.append(text === '' ? element('p', { class: 'soft' }, 'None yet.') : element('pre', { class: 'script', tabindex: 0 }, text));
 }
 
-const study = editor({ get, post, look });
-const views = { where: showWhere, candidates: showCandidates, curves: showCurves, calibration: showCalibration, ladder: showLadder,
-  study: (view) => study.show(view, here.model), commands: showCommands };
+const study = editor({ get, kept, post, look });
+const ofModel = (what) => () => kept(what, { model: here.model });
+/** `ask`: for what the view is drawn from. */
+const views = {
+  where: { ask: () => here.where, show: showWhere },
+  candidates: { ask: ofModel('candidates'), show: showCandidates },
+  curves: { ask: ofModel('curves'), show: showCurves },
+  calibration: { ask: () => kept('calibration'), show: showCalibration },
+  ladder: { ask: () => kept('ladder'), show: showLadder },
+  study: { ask: () => study.ask(here.model), show: (view, fresh) => study.show(view, fresh) },
+  commands: { ask: async () => (await get('session')).text, show: showCommands },
+};
+/** What every view is drawn from besides. */
+const surroundings = () => JSON.stringify([here.tab, here.model, here.name, here.state.models, here.state.settable, here.state.study.fault]);
 
-let turn = 0, focusedBefore = null;
+let turn = 0;
+let drawn = null; // { answer, surroundings } of the view that is seen
+const isDrawn = (answer) => drawn !== null && drawn.answer === answer && drawn.surroundings === surroundings();
+
 async function showView() {
-  const mine = ++turn;
+  const mine = ++turn, current = () => mine === turn, { ask, show } = views[here.tab];
   writeAddress();
+  showTabs();
+  setLate(false);
+  let answer = null, refused = null;
+  try {
+    answer = await ask();
+  } catch (error) {
+    refused = error;
+  }
+  if (!current()) return;
+  const view = element('div'), back = emptied(view);
+  try {
+    if (refused) throw refused;
+    drawn = { answer, surroundings: surroundings() };
+    await show(view, answer, current);
+  } catch (error) {
+    drawn = null;
+    if (current()) view.append(element('p', { class: 'warning' }, error.message));
+  }
+  if (!current()) return;
+  began.place();
+  back();
+}
+
+function showTabs() {
   for (const tab of at('tabs').children) {
     const on = tab.dataset.view === here.tab;
     tab.setAttribute('aria-selected', on);
     tab.tabIndex = on ? 0 : -1;
     if (on) at('tabs').scrollLeft = tab.offsetLeft - 0.5 * (at('tabs').clientWidth - tab.offsetWidth); // where they do not all find room
   }
-  const view = element('div');
-  const old = here.figures;
-  here.figures = [];
-  here.samples = null;
-  if (here.added) drawForce(null);
+  at('view').setAttribute('aria-labelledby', `tab-${here.tab}`);
+}
+
+/** Puts an empty view in the place of what was there; what is given back puts scroll and focus back when it is filled. */
+let focusedBefore = null;
+function emptied(view) {
+  if (here.tab !== 'candidates') {
+    here.candidate = null;
+    if (here.added) drawForce(null);
+  }
   const scroll = scrollY;
   if (at('view').contains(document.activeElement)) focusedBefore = document.activeElement;
-  for (const figure of old) figure.destroy();
+  for (const figure of here.figures.splice(0)) figure.destroy();
+  here.samples = null;
   at('view').replaceChildren(view);
   at('view').dataset.view = here.tab;
-  try {
-    await views[here.tab](view);
-  } catch (error) {
-    if (mine === turn) view.append(element('p', { class: 'warning' }, error.message));
-  }
-  if (mine !== turn) return;
-  scrollTo(0, scroll);
-  began.place();
-  if (focusedBefore && document.activeElement === document.body) focusAgain(focusedBefore);
-  focusedBefore = null;
+  const begun = scrollY;
+  return () => {
+    if (scrollY === begun) scrollTo(0, scroll); // else somebody has scrolled meanwhile
+    if (focusedBefore && document.activeElement === document.body) focusAgain(focusedBefore);
+    focusedBefore = null;
+  };
 }
 
 /** On what has the same place in a view that is drawn anew; else on the view. */
 function focusAgain(old) {
-  const key = ['data-key', 'data-curve', 'data-map', 'data-rung', 'id'].find((name) => old.hasAttribute(name));
+  const key = ['data-key', 'data-curve', 'data-map', 'data-rung', 'data-plot', 'data-fold', 'data-candidate', 'data-box', 'id'].find((name) => old.hasAttribute(name));
   const same = key && at('view').querySelector(`[${key}="${CSS.escape(old.getAttribute(key))}"]`);
   (same && !same.disabled ? same : at('view')).focus({ preventScroll: true });
 }
 
-/** Somebody types, or is asked something: the view is not drawn anew under their hands. */
-const inHand = () => (here.tab === 'study' && study.changed()) || at('view').querySelector('.asking .yes') !== null;
+/** Somebody types, has moved a slider, or is asked something: the view is not drawn anew under their hands. */
+function inHand() {
+  const focused = document.activeElement, view = at('view');
+  return (here.tab === 'study' && study.changed()) || view.querySelector('.asking .yes, [data-changed]') !== null || (view.contains(focused) && focused.matches('input'));
+}
 
-async function showAll() {
+/** Something newer could be shown than what somebody has in hand. */
+function setLate(late) {
+  here.late = late;
+  at('newer').hidden = !late || here.tab === 'study';
+}
+
+/** The view again, if what it is drawn from has changed. */
+async function refreshView() {
+  const mine = turn, answer = await views[here.tab].ask();
+  if (mine !== turn) return;
+  const held = inHand() && !here.chosen;
+  here.chosen = false;
+  if (held && here.tab === 'study') study.compare(answer);
+  if (isDrawn(answer) || held) setLate(!isDrawn(answer));
+  else await showView();
+}
+
+let refreshing = null, again = false;
+/** Once at a time: who is at it does it again. */
+function showAll() {
   again = true;
-  if (busy) return; // who is at it does it again
-  busy = true;
+  return (refreshing ??= refresh());
+}
+async function refresh() {
   try {
     while (again) {
       again = false;
-      const [where, motion] = await Promise.all([get('where', { model: here.model }), askForMotion()]);
+      const mine = ++motionTurn, [where, motion] = await Promise.all([kept('where', { model: here.model }), askForMotion()]);
+      if (again) continue;
       here.where = where;
-      await showMotion(motion);
-      mark([], '', true);
-      here.late = inHand() && !here.chosen;
-      here.chosen = false;
-      if (!here.late) await showView();
+      takeMotion(mine === motionTurn ? motion : here.motion);
+      offerWithMarks();
+      await refreshView();
     }
   } finally {
-    busy = false;
+    refreshing = null;
   }
 }
 
@@ -827,26 +1061,27 @@ function showTab(name, focus = false) {
 function begin() {
   readAddress();
   at('work').hidden = !live;
-  at('tabs').replaceChildren(...tabs.map(([name, text]) => element('button', { role: 'tab', 'data-view': name, 'aria-controls': 'view', onclick: () => showTab(name) }, text)));
+  at('tabs').replaceChildren(...tabs.map(([name, text]) => element('button', { role: 'tab', 'data-view': name, 'aria-controls': 'view', id: `tab-${name}`, onclick: () => showTab(name) }, text)));
   at('tabs').addEventListener('keydown', (event) => {
     const there = tabs.filter(([name]) => !at('tabs').querySelector(`[data-view=${name}]`).hidden), n = there.length;
     const k = there.findIndex(([name]) => name === here.tab);
     const next = { ArrowRight: (k + 1) % n, ArrowLeft: (k + n - 1) % n, Home: 0, End: n - 1 }[event.key];
-    if (next === undefined) return;
+    if (next === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
     showTab(there[next][0], true);
     event.preventDefault();
   });
   for (const verb of ['run', 'fit', 'discover']) at(verb).addEventListener('click', () => start(verb, verb));
   at('stop').addEventListener('click', stop);
-  at('add').addEventListener('click', () => start('add', 'add', { effect: at('effect').value }));
+  at('add').addEventListener('click', () => start('add', 'add', { effect: at('effect').value, models: addedTo }));
   at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
   at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
   at('method').addEventListener('change', (event) => { here.method = event.target.value; showMotion().catch(say); });
-  at('experiment').addEventListener('change', (event) => { chooseExperiment(event.target.value); showMotion().then(showView).catch(say); });
+  at('experiment').addEventListener('change', (event) => { chooseExperiment(event.target.value); showTime(); showView().catch(say); });
+  at('newer').querySelector('button').addEventListener('click', () => showView().catch(say));
   at('whole').addEventListener('click', () => time.zoom(null));
   at('unmark').addEventListener('click', unmark);
-  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: written(here.fixed[0]) }));
-  addEventListener('keydown', (event) => { if (event.key === 'Escape') unmark(); });
+  at('holdout').addEventListener('click', () => start('holdout', 'set', { what: 'validation', name: here.name, value: written(here.fixed.intervals[0]) }));
+  addEventListener('keydown', (event) => { if (event.key === 'Escape' && !event.target.closest?.('input, textarea, select')) unmark(); });
   addEventListener('beforeunload', (event) => { if (study.changed()) event.preventDefault(); });
   onScreenChange(() => { drawTime(); showView().catch(say); });
   watch();
