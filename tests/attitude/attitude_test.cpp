@@ -171,7 +171,7 @@ TEST(Attitude, RowThatIsMissingAltogetherIsAGapToo) {
   EXPECT_EQ(missing_in(a.theta), 0u);
   EXPECT_EQ(missing_in(a.theta_mean), 4u);  // the ends and both sides of the gap
   EXPECT_EQ(missing_in(a.alpha_T), 12u);
-  EXPECT_THAT(a.notes, Contains(HasSubstr("1 steps differ")));
+  EXPECT_THAT(a.notes, Contains(HasSubstr("1 step differs")));
 }
 
 TEST(Attitude, RatesOfSlightlyUnevenTimesAreThoseOfThePolynomial) {

@@ -64,7 +64,7 @@ TEST_F(TrackFile, TimeThatDoesNotIncreaseNamesLineAndBothTimes) {
 TEST_F(TrackFile, AllLostIsSaidInWords) {
   const std::string content = "t[s],P_y[px],P_z[px],ok\n0,1,2,0\n1,,,1\n";
   expect_parts(message_of<RunError>([&] { (void)read(content); }), {"track.csv", "all 2 samples are lost"});
-  expect_parts(message_of<RunError>([&] { (void)read("t[s],P_y[px],P_z[px]\n,1,2\n"); }), {"all 1 samples are lost"});
+  expect_parts(message_of<RunError>([&] { (void)read("t[s],P_y[px],P_z[px]\n,1,2\n"); }), {"its one sample is lost"});
 }
 
 TEST_F(TrackFile, AMissingColumnNamesTheNearest) {

@@ -183,7 +183,7 @@ TEST(UnknownErrors, OfACalibratedCameraAreNotLookedFor) {
 }
 
 /// The drive follows what is asked for at a limited rate: not as a lag does, of which the rate is in proportion to what is left.
-TEST(Accept, ALagThatIsOfAnotherFormIsAnAlias) {
+TEST(Accept, ALagThatIsOfAnotherFormIsAnImitation) {
   const auto limited = [](double last, double asked) { return last + std::clamp(asked - last, -2.0, 2.0); };  // 40 N/s
   const World slow(record_of_cart({}, {}, 41, limited));
   const RankedCandidate lag = slow.entry("input_lag");
@@ -313,7 +313,7 @@ TEST(PredictiveLoglik, IsTheDensityOfTheHeldOutResidualsWithUncertainParameters)
   EXPECT_NEAR(predictive_loglik(estimate), trace.loglik, 1e-9 * std::abs(trace.loglik));
 }
 
-TEST(Accept, AnAliasIsNotPreferredToAnEffectThatGainsMore) {
+TEST(Accept, AnImitationIsNotPreferredToAnEffectThatGainsMore) {
   const World world = with_friction(1.5);
   std::vector<RankedCandidate> ranked = {world.entry("hysteresis"), world.entry("coulomb_friction")};
   ASSERT_TRUE(leaves_something(ranked[0], world));
@@ -328,7 +328,7 @@ TEST(Accept, AnAliasIsNotPreferredToAnEffectThatGainsMore) {
 }
 
 /// Beside the friction, which alone explains all, hysteresis is not needed: it must not be accepted on the friction's account.
-TEST(Accept, AnAliasNotSignificantBesideTheSecondEffectIsNotAccepted) {
+TEST(Accept, AnImitationNotSignificantBesideTheSecondEffectIsNotAccepted) {
   const World world = with_friction(1.5);
   std::vector<RankedCandidate> ranked = {world.entry("hysteresis"), world.entry("coulomb_friction", false)};
   const auto left = world.accept(ranked);
@@ -361,7 +361,7 @@ TEST(Accept, NothingIsChosenPastAnUnknownFormWorthTwiceAsMuch) {
 
 /// The drive is limited in its rate, which no known effect describes, and there is a little friction: that is right, but says nothing of
 /// what is missing. Both are made to read nothing, else the friction, too, would be tested for what the lag leaves and be an imitation.
-TEST(Accept, NothingIsChosenPastALargerAliasThatNoSecondEffectExplains) {
+TEST(Accept, NothingIsChosenPastALargerImitationThatNoSecondEffectExplains) {
   const auto limited = [](double last, double asked) { return last + std::clamp(asked - last, -2.0, 2.0); };
   const World world(record_of_cart({effect("coulomb_friction")}, {{"friction", 0.6}}, 41, limited));
   std::vector<RankedCandidate> ranked = {world.entry("input_lag"), world.entry("coulomb_friction")};

@@ -1,4 +1,4 @@
-// Numbers of the system that are held at a wrong value, and those that are known.
+// Numbers of the system that are fixed at a wrong value, and those that are known.
 #include "misfit/discover/fixed_parameters.h"
 
 #include <gmock/gmock.h>
@@ -21,12 +21,14 @@ std::vector<std::string> said(const std::map<std::string, double>& sigmas) {
   return fixed_parameters_in_words({estimate, signals, registry(), 1}, ScoreTest(estimate), {});
 }
 
-TEST(HeldParameters, OneThatTheDataWantOtherwiseIsSaid) {
+TEST(FixedParameters, OneThatTheDataWantOtherwiseIsSaid) {
   EXPECT_THAT(said({}), testing::Contains(testing::HasSubstr("unless it is known that well, estimate it (misfit set STUDY parameters.")));
 }
 
 /// Its score knows nothing of that: freed it stays where it is.
-TEST(HeldParameters, OneThatIsKnownTooWellToMoveIsNotSaid) { EXPECT_THAT(said({{"stiffness", 1e-4}, {"mass", 1e-5}}), testing::IsEmpty()); }
+TEST(FixedParameters, OneThatIsKnownTooWellToMoveIsNotSaid) {
+  EXPECT_THAT(said({{"stiffness", 1e-4}, {"mass", 1e-5}}), testing::IsEmpty());
+}
 
 }  // namespace
 }  // namespace misfit

@@ -135,12 +135,12 @@ TEST(DiscoverGeneric, LetsAFrequencyDriftThatDrifts) {
   EXPECT_THAT(first.why, testing::HasSubstr("its frequency drifts by"));
 }
 
-TEST(DiscoverGeneric, AFrequencyThatDoesNotDriftIsHeld) {
+TEST(DiscoverGeneric, AFrequencyThatDoesNotDriftIsFixed) {
   const Discovery found = in_cart("periodic_forcing", {{"cosine", 1.0}, {"sine", 0.5}, {"frequency", 1.3}});
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(first.effect, "periodic_forcing");
-  EXPECT_FALSE(first.parameters.contains("frequency_drift")) << "held at 0 it is no result";
+  EXPECT_FALSE(first.parameters.contains("frequency_drift")) << "fixed at 0 it is no result";
   EXPECT_THAT(first.free, testing::Not(testing::Contains("frequency_drift")));
 }
 

@@ -77,17 +77,17 @@ TEST(WithoutAnEffect, AnEffectThatIsNotInTheModelCannotGo) {
   EXPECT_FALSE(may_leave(fitted().estimate, "quadratic_drag"));
 }
 
-/// Dry friction over a width of 0.1 m/s acts, and is in the model over `held`.
-std::optional<FreedWidth> width_found(double held) {
+/// Dry friction over a width of 0.1 m/s acts, and is in the model over `fixed`.
+std::optional<FreedWidth> width_found(double fixed) {
   ModelRequest request = cart({effect("viscous_friction"), effect("coulomb_friction")});
   request.parameters["stiffness"].free = true;
-  request.parameters["width"].value = held;
+  request.parameters["width"].value = fixed;
   const std::vector<Signals> signals = {record_of_cart({effect("coulomb_friction")}, {{"friction", 1.5}, {"width", 0.1}})};
   const FilterEstimate estimate = estimate_filter(assemble(request, registry()), {}, signals);
   return freed_width(estimate, signals, "coulomb_friction", 1);
 }
 
-TEST(AHeldWidth, ThatIsNotTheRightOneIsFound) {
+TEST(AFixedWidth, ThatIsNotTheRightOneIsFound) {
   const auto wide = width_found(0.4);
   ASSERT_TRUE(wide);
   EXPECT_EQ(wide->coefficient, "width");
@@ -95,14 +95,14 @@ TEST(AHeldWidth, ThatIsNotTheRightOneIsFound) {
   EXPECT_FALSE(may_be_chance(wide->drop, 1, 40.0)) << wide->drop;
 }
 
-TEST(AHeldWidth, ThatIsRightGainsNothing) {
+TEST(AFixedWidth, ThatIsRightGainsNothing) {
   const auto right = width_found(0.1);
   if (right) {
     EXPECT_TRUE(may_be_chance(right->drop, 1, 40.0)) << right->drop;
   }
 }
 
-TEST(AHeldWidth, IsOneOfTheEffectThatIsAskedFor) {
+TEST(AFixedWidth, IsOneOfTheEffectThatIsAskedFor) {
   EXPECT_FALSE(freed_width(fitted().estimate, fitted().signals, "viscous_friction", 1)) << "it has none";
 }
 

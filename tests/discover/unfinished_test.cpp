@@ -60,7 +60,7 @@ TEST_F(UnfinishedDiscovery, ARoundWithoutTimeEndsInWords) {
   options.round_limit = 1e-6;
   const Discovery found = discover(options);
   EXPECT_EQ(found.outcome, SearchOutcome::not_finished);
-  EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent before"));
+  EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent: the test for effects"));
   for (const Candidate& c : found.candidates) EXPECT_FALSE(c.accepted);
 }
 
@@ -82,7 +82,7 @@ TEST(Unfinished, AnAcceptedEffectStaysWhereOnlyItsGroupIsNotFinished) {
   found.candidates[0].accepted = true;
   say_cut_off("the time limit of 5 s for this round of discover was spent", true, found);
   EXPECT_EQ(found.verdict, "Missing: lag.");
-  EXPECT_THAT(found.sentences.at(0), StartsWith("the time limit of 5 s for this round of discover was spent before"));
+  EXPECT_THAT(found.sentences.at(0), StartsWith("the time limit of 5 s for this round of discover was spent: the test for effects"));
 }
 
 TEST(Unfinished, SaysNothingWhereAllWereFinished) {

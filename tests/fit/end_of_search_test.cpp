@@ -31,14 +31,14 @@ void expect_certified(const Problem& problem, int start) {
   EXPECT_GE(sigma, digits_of_sigma(problem));
 }
 
-TEST(SimulatedRuns, HasSixDigitsAtCertifiedMinimaFromTheNearStart) {
+TEST(EndOfSearch, HasSixDigitsAtCertifiedMinimaFromTheNearStart) {
   for (const Problem& problem : problems) {
     SCOPED_TRACE(problem.name);
     expect_certified(problem, 2);
   }
 }
 
-TEST(SimulatedRuns, HasSixDigitsFromTheFarStartButWhereThatIsLost) {
+TEST(EndOfSearch, HasSixDigitsFromTheFarStartButWhereThatIsLost) {
   for (const Problem& problem : problems) {
     if (problem.name == "MGH10" || problem.name == "MGH17") continue;  // below
     SCOPED_TRACE(problem.name);
@@ -47,7 +47,7 @@ TEST(SimulatedRuns, HasSixDigitsFromTheFarStartButWhereThatIsLost) {
 }
 
 /// MGH17: exp(−b4 x), exp(−b5 x) are over before the second row; MGH10: a valley a thousand steps long.
-TEST(SimulatedRuns, WhereItGotStuckNothingIsSaidOfTheData) {
+TEST(EndOfSearch, WhereItGotStuckNothingIsSaidOfTheData) {
   for (const Problem& problem : problems) {
     if (problem.name != "MGH10" && problem.name != "MGH17") continue;
     SCOPED_TRACE(problem.name);
@@ -63,7 +63,7 @@ TEST(SimulatedRuns, WhereItGotStuckNothingIsSaidOfTheData) {
 }
 
 /// Of b1 and b2 only the product acts, wherever a search ends.
-TEST(SimulatedRuns, WhatNoPointDeterminesIsSaidOfTheData) {
+TEST(EndOfSearch, WhatNoPointDeterminesIsSaidOfTheData) {
   Problem problem = problems.front();
   problem.formula = "b1*b2*x/(3308 + x)";
   const Fit fit = fitted(problem, 1);

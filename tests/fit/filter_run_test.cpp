@@ -87,7 +87,7 @@ TEST(RunLinear, DerivativesByNoiseAreThoseOfWholeRuns) {
 }
 
 /// Innovations of the run with a parameter moved and every gain as it was.
-std::vector<double> with_gains_held(const Cart& cart, const FilterTrace& trace, const std::vector<double>& values) {
+std::vector<double> with_gains_fixed(const Cart& cart, const FilterTrace& trace, const std::vector<double>& values) {
   Model moved = cart.model.model;
   for (std::size_t i = 0; i < values.size(); ++i) moved.parameters[i].value = values[i];
   Stepper stepper(moved);
@@ -120,7 +120,7 @@ std::vector<double> with_gains_held(const Cart& cart, const FilterTrace& trace, 
   return out;
 }
 
-TEST(FilterJacobian, IsTheDerivativeOfInnovationsWithGainsHeld) {
+TEST(FilterJacobian, IsTheDerivativeOfInnovationsWithGainsFixed) {
   const Cart cart(120);
   FilterJacobian jacobian;
   const FilterTrace trace = cart.run(&jacobian);
@@ -129,9 +129,9 @@ TEST(FilterJacobian, IsTheDerivativeOfInnovationsWithGainsHeld) {
   const auto stiffness = static_cast<std::size_t>(cart.model.model.find_parameter("stiffness"));
   constexpr double h = 1e-3;
   values[stiffness] += h;
-  const std::vector<double> plus = with_gains_held(cart, trace, values);
+  const std::vector<double> plus = with_gains_fixed(cart, trace, values);
   values[stiffness] -= 2.0 * h;
-  const std::vector<double> minus = with_gains_held(cart, trace, values);
+  const std::vector<double> minus = with_gains_fixed(cart, trace, values);
   const double size = jacobian.J.cwiseAbs().maxCoeff();
   for (Eigen::Index r = 0; r < jacobian.J.rows(); ++r) {
     const auto i = static_cast<std::size_t>(r);

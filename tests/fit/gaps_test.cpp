@@ -144,7 +144,7 @@ TEST(Gaps, PartsTooShortForAStateAreLeftOutAndCounted) {
   whole.t.back() += 7200.0;
   const std::vector<Signals> parts = split_at_gaps(first_order_model(), whole);
   ASSERT_EQ(parts.size(), 2U);
-  EXPECT_THAT(parts[0].notes.back(), HasSubstr("1 samples in parts of fewer than 5 are not used"));
+  EXPECT_THAT(parts[0].notes.back(), HasSubstr("1 sample in a part of fewer than 5 is not used"));
 }
 
 TEST(Gaps, ExcludedSamplesAreThoseOfTheRecordingsBeginning) {

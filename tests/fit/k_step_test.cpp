@@ -46,7 +46,7 @@ TEST(KStep, AFewThatDivergeAreCountedAndLeftOut) {
   send_off(estimate, 2);
   const KStepErrors errors = k_step_errors(estimate);
   EXPECT_THAT(errors.diverged, testing::Each(2U));
-  EXPECT_THAT(errors.words, testing::StartsWith("2 of 101 free runs diverge within 1 step: they are not in its error; 2 of "));
+  EXPECT_THAT(errors.words, testing::StartsWith("2 of 101 predictions diverge within 1 sample: they are not in its error; 2 of "));
   EXPECT_NEAR(errors.rms.at("speed_reading")[5], before.rms.at("speed_reading")[5], 0.05 * before.rms.at("speed_reading")[5]);
 }
 
@@ -56,7 +56,7 @@ TEST(KStep, WhereManyDivergeNoErrorIsGiven) {
   estimate.forced.model.parameters[static_cast<std::size_t>(estimate.forced.model.find_parameter("cubic_stiffness"))].value = 1.0;
   send_off(estimate, 10);
   const KStepErrors errors = k_step_errors(estimate);
-  EXPECT_THAT(errors.words, testing::HasSubstr("10 of 91 free runs diverge within 32 steps: no error is given there"));
+  EXPECT_THAT(errors.words, testing::HasSubstr("10 of 91 predictions diverge within 32 samples: no error is given there"));
   for (const auto& [channel, rms] : errors.rms) EXPECT_TRUE(std::isnan(rms.back())) << channel;
 }
 

@@ -55,7 +55,7 @@ TEST(KnownNoise, OfAnotherSizeThanTheResidualsIsSaid) {
   const auto of_size = [](double sigma) { return fitted(false, 600, KnownNoise{sigma, true}).warnings; };
   const auto said = [](const std::vector<std::string>& warnings) {
     return std::any_of(warnings.begin(), warnings.end(),
-                       [](const std::string& w) { return w.find("that the study holds") != std::string::npos; });
+                       [](const std::string& w) { return w.find("that the study fixes") != std::string::npos; });
   };
   EXPECT_TRUE(said(of_size(3.0 * noise)));
   EXPECT_FALSE(said(of_size(noise)));

@@ -44,7 +44,7 @@ TEST_F(InABrowser, AStudyWithAnErrorIsMended) {
   expect_good(study.path(""), "mend");
 }
 
-TEST_F(InABrowser, AParameterIsHeldAndAMarkedTimeHeldOut) {
+TEST_F(InABrowser, AParameterIsFixedAndAMarkedTimeHeldOut) {
   const OscillatorStudy study;
   expect_good(study.path(""), "settings");
 }

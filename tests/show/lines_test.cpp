@@ -24,7 +24,8 @@ TEST(LineOfAFit, GivesTheRandomForceOrWithoutOneTheResiduals) {
 
 TEST(LineOfAFit, SaysWhatAWarningOfAnExperimentIsAbout) {
   Fit fit = filter();
-  fit.warnings = {"experiment 'bench': the gaps are not random: in 30 of 31 missing samples the motion left the picture"};
+  fit.warnings = {
+      "experiment 'bench': the gaps are not random: in 30 of 31 missing samples a sensor at its limit, or a marker out of the picture"};
   EXPECT_THAT(line_of(fit), testing::HasSubstr("; ! the gaps are not random"));
   EXPECT_THAT(line_of(fit), testing::Not(testing::HasSubstr("experiment")));
 }

@@ -48,7 +48,7 @@ class RigStudy : public testing::Test {
     return Session({.study = study.string(), .out = (folder_.path() / "out").string()}, registry_);
   }
   static Rig rig_of(Session& session) {
-    hold_perturbed_camera(session);
+    fix_perturbed_camera(session);
     return Rig(session, prepare(session).model);
   }
 
@@ -72,7 +72,7 @@ TEST_F(RigStudy, CalibratingAgainFreesWhatTheStudyFrees) {
 
 std::string refusal(Session session) {
   try {
-    hold_perturbed_camera(session);
+    fix_perturbed_camera(session);
     static_cast<void>(Rig(session, prepare(session).model));
   } catch (const InputError& error) {
     return error.what();

@@ -122,7 +122,8 @@ void note_tests(Calibration& calibration) {
 
 void note_outliers(Calibration& calibration, std::size_t points) {
   if (calibration.outliers == 0) return;
-  calibration.notes.push_back(std::to_string(calibration.outliers) + " of " + std::to_string(points) + " points were rejected as outliers");
+  calibration.notes.push_back(std::to_string(calibration.outliers) + " of " + std::to_string(points) +
+                              (calibration.outliers == 1 ? " points was rejected as an outlier" : " points were rejected as outliers"));
   if (std::size_t{3} * calibration.outliers > points) {
     calibration.notes.emplace_back("that is more than a third: check that points, angles and geometry belong together");
   }

@@ -101,7 +101,7 @@ struct Discovery {
   /// unexplained, or it is not of that kind.
   std::vector<EffectPlace> unexplained_effects;
   bool unexplained_error = false;  ///< not a force: an error of the output unexplained_port
-  /// Numbers of the system that the study holds and that, freed, would explain about as much as the best effect does, in words: the most
+  /// Numbers of the system that the study fixes and that, freed, would explain about as much as the best effect does, in words: the most
   /// significant first; missing: none.
   std::optional<std::vector<std::string>> fixed_parameters;
   std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have

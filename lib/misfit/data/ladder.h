@@ -23,7 +23,7 @@ struct Rung {
   std::optional<double> validation_loglik;
   std::map<std::string, Estimate> force;                      ///< strength of the random force
   std::map<std::string, Estimate> rms, validation_rms;        ///< per channel, one step ahead
-  std::map<std::string, std::vector<double>> k_step;          ///< channel → RMS at 1, 2, 4, 8, 16, 32 steps ahead [unit of rms]
+  std::map<std::string, std::vector<double>> k_step;          ///< channel → RMS at 1, 2, 4, 8, 16, 32 samples ahead [unit of rms]
   std::optional<Estimate> trim;                               ///< [rad]
   std::map<std::string, Estimate> parameters;                 ///< of the added effect, numbers alone
   std::optional<int> new_parameters;                          ///< free ones that its parent does not have, coefficients of curves too

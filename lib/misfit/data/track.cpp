@@ -64,8 +64,8 @@ class TrackBuilder {
 
   Track finish() {
     if (lost_ == track_.t.size()) {
-      throw RunError(
-          fmt::format("{}: all {} samples are lost: there is no position of the apex to work with", table_.source, table_.rows()));
+      throw RunError(fmt::format("{}: {} lost: there is no position of the apex to work with", table_.source,
+                                 table_.rows() == 1 ? "its one sample is" : fmt::format("all {} samples are", table_.rows())));
     }
     if (without_time_ > 0)
       track_.notes.push_back(counted(without_time_, "row without a time was dropped", "rows without a time were dropped"));

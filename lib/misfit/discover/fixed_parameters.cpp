@@ -28,7 +28,7 @@ FilterModel with_fixed_ones_free(const FilterEstimate& estimate) {
 std::string in_words(const FixedParameter& fixed, double p_value) {
   return fmt::format(
       "{0} is fixed at {1}, but these data ask for {2} ({3}drop {4}, family-wise {5}): unless it is known that well, "
-      "estimate it (misfit set STUDY parameters.{0}.free=true)",
+      "estimate it (parameters.{0}.free = true in the study)",
       fixed.name, in_display_unit(fixed.value, fixed.unit), in_display_unit(fixed.wanted, fixed.unit, fixed.sigma),
       fixed.actual_drop ? "" : "predicted ", format_value(fixed.actual_drop.value_or(fixed.predicted_drop)), p_equals(p_value));
 }

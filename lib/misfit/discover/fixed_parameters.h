@@ -9,7 +9,7 @@
 
 namespace misfit {
 
-/// A parameter of the system that the study holds, and what these data say of it.
+/// A parameter of the system that the study fixes, and what these data say of it.
 struct FixedParameter {
   std::string name, unit;
   double value = 0.0;                ///< as fixed [unit]

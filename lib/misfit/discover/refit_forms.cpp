@@ -210,9 +210,11 @@ void note_half_a_sample(Refit& out) {
   if (inputs.empty()) return;
   constexpr const char *constant = "constant", *line = "a straight line";
   out.also = fmt::format(
-      "that is half a sampling interval ({:.4g} s), the shift seen when the model takes an input as {} between samples and it is {}: if "
-      "that is so for {}, set hold = \"{}\" there under [inputs] instead of adding this effect",
-      half, straight ? line : constant, straight ? constant : line, join_words(inputs), straight ? "zero_order" : "first_order");
+      "that is half a sampling interval ({:.4g} s), as an input seems shifted that the model takes as {} between its samples and that is "
+      "{} "
+      "there: if {} {}, write hold = \"{}\" for it under [inputs] of the system instead of adding this effect",
+      half, straight ? line : constant, straight ? constant : line, join_words(inputs), inputs.size() == 1 ? "is one" : "are such",
+      straight ? "zero_order" : "first_order");
 }
 
 bool free_drifts(const RefitWork& work, Refit& out) {

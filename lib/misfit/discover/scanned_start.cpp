@@ -17,31 +17,31 @@ std::string coefficient_of(const BoundEffect& effect, int parameter) {
 }
 
 /// Shapes that are fixed have one value in all cells.
-void hold(const std::map<std::string, double>& held, CandidateModel& out) {
+void fix_shapes(const std::map<std::string, double>& fixed, CandidateModel& out) {
   const BoundEffect& effect = out.model.effects.back();
-  const auto held_value = [&](int parameter) {
-    const auto found = held.find(coefficient_of(effect, parameter));
-    return found == held.end() ? std::optional<double>() : found->second;
+  const auto fixed_value = [&](int parameter) {
+    const auto found = fixed.find(coefficient_of(effect, parameter));
+    return found == fixed.end() ? std::optional<double>() : found->second;
   };
   for (auto& cell : out.cells) {
-    for (std::size_t i = 0; i < out.shapes.size(); ++i) cell[i] = held_value(out.shapes[i]).value_or(cell[i]);
+    for (std::size_t i = 0; i < out.shapes.size(); ++i) cell[i] = fixed_value(out.shapes[i]).value_or(cell[i]);
   }
   std::sort(out.cells.begin(), out.cells.end());
   out.cells.erase(std::unique(out.cells.begin(), out.cells.end()), out.cells.end());
-  if (out.frequency >= 0 && held_value(out.frequency)) out.frequency = -1;
+  if (out.frequency >= 0 && fixed_value(out.frequency)) out.frequency = -1;
   for (const auto& coefficient : effect.coefficients) {
     if (coefficient.parameter < 0) continue;
-    if (const auto value = held_value(coefficient.parameter)) out.model.parameters[coefficient.parameter].value = *value;
+    if (const auto value = fixed_value(coefficient.parameter)) out.model.parameters[coefficient.parameter].value = *value;
   }
 }
 
 }  // namespace
 
-std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequest& effect, const std::map<std::string, double>& held) {
+std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequest& effect, const std::map<std::string, double>& fixed) {
   constexpr double least_chi2 = 10.0;
   std::optional<CandidateModel> model = candidate_model_of(task.without, effect, task.calibration);
   if (!model) return std::nullopt;
-  hold(held, *model);
+  fix_shapes(fixed, *model);
   const ScoreTest score(task.without.estimate);
   const ForceSensitivity force(task.without.estimate);
   const std::vector<CandidateModel> alone = {std::move(*model)};

@@ -23,10 +23,10 @@ struct ScanTask {
   int threads = 0;                           ///< does not change the answer
 };
 
-/// Score tests over the cells of the effect's scanned shapes (screen.h), then the effect refitted from the best of them (refit.h). `held`:
+/// Score tests over the cells of the effect's scanned shapes (screen.h), then the effect refitted from the best of them (refit.h). `fixed`:
 /// its coefficients that are to stay at these values, by name. nullopt where it cannot be screened, explains nothing (chi² below 10), or
 /// cannot be refitted.
 [[nodiscard]] std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequest& effect,
-                                                        const std::map<std::string, double>& held);
+                                                        const std::map<std::string, double>& fixed);
 
 }  // namespace misfit

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
 #include <utility>
 
 #include "misfit/core/lists.h"
@@ -183,7 +181,7 @@ std::vector<ScreeningResult> screen(const ScoreWork& work, const std::vector<Can
     if (!best.runs || best.result.dof == 0) return;
     constexpr double max_p_refined = 0.1;
     if (!candidate_models[s].shapes.empty() &&
-        sidak(std::exp(log_score_tail(candidate_models[s], best.result)), best.cells_effective) < max_p_refined)
+        sidak(chi_square_tail(best.result.chi2, best.result.dof), best.cells_effective) < max_p_refined)
       refine_cell(work.estimate, work.score, best);
     best.log_p = log_score_tail(candidate_models[s], best.result);
     best.p_value = sidak(std::exp(best.log_p), best.cells_effective);

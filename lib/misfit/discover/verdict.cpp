@@ -257,8 +257,8 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
   if (flight.empty()) {
     out.verdict = "The camera model is incomplete: " + disagreement + "; " + remedy + ".";
   } else {
-    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight + "; " + remedy +
-                  ": the error of a wrong camera model can be described by a physical effect.";
+    out.verdict = "Sweep and flight disagree: " + disagreement + ", and the flight gives evidence of " + flight + "; first " + remedy +
+                  ", since the error of a wrong camera model can be described by a physical effect.";
   }
 }
 

@@ -19,7 +19,7 @@ struct WholeStrength {
 [[nodiscard]] std::vector<WholeStrength> whole_strengths(const FilterEstimate& estimate);
 
 /// The request with its last effect on the input itself, where its strength is a share of what the input is, whatever the gain by which it
-/// acts: held at 1, nothing is said of that gain, which a strength fixed at a number would fix. nullopt: it has no such strength, the
+/// acts: fixed at 1, nothing is said of that gain, which a strength fixed at a number would fix. nullopt: it has no such strength, the
 /// system has no port of the input's name, or it acts there already.
 [[nodiscard]] std::optional<ModelRequest> on_its_input(const Model& model, const ModelRequest& request);
 

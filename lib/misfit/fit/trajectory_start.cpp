@@ -6,7 +6,7 @@
 namespace misfit {
 namespace {
 
-/// As far as it is free: what the study holds stays.
+/// As far as it is free: what the study fixes stays.
 void damping_to_zero(Model& model) {
   const Curve* damping = model.find_curve(model.system->spec().damping_curve);
   if (damping == nullptr) return;
@@ -18,9 +18,9 @@ void damping_to_zero(Model& model) {
 
 /// Equation error with the parameters of `kept` fixed where `asked` has them, and free again afterwards.
 FittedModel with_kept(const Model& asked, const std::vector<Signals>& experiments, const std::vector<int>& kept) {
-  Model held = asked;
-  for (int i : kept) held.parameters[i].free = false;
-  FittedModel start = equation_error(held, experiments);
+  Model with_fixed = asked;
+  for (int i : kept) with_fixed.parameters[i].free = false;
+  FittedModel start = equation_error(with_fixed, experiments);
   for (std::size_t i = 0; i < asked.parameters.size(); ++i) start.model.parameters[i].free = asked.parameters[i].free;
   std::vector<Penalty> penalties = curve_penalties(start.model);
   for (std::size_t k = 0; k < penalties.size(); ++k) penalties[k].lambda = start.penalties[k].lambda;

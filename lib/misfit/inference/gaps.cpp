@@ -95,7 +95,8 @@ std::string note_of(const Signals& whole, const std::vector<std::size_t>& cuts, 
   const std::size_t gaps = cuts.size() - 2;
   std::string text = "cut at " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") + " in time of up to " + format_value(longest) +
                      " s, too long for the model to be run across: each part has initial states of its own";
-  if (left_out > 0) text += "; " + std::to_string(left_out) + " samples in parts of fewer than 5 are not used";
+  if (left_out > 0)
+    text += "; " + counted(left_out, "sample in a part of fewer than 5 is not used", "samples in parts of fewer than 5 are not used");
   return text;
 }
 

@@ -20,7 +20,7 @@ struct Bounds {
   const Eigen::VectorXd &lower, &upper;
 };
 
-ActiveBounds hold(const Gaussian& density, const Bounds& bounds, const std::vector<int>& side) {
+ActiveBounds active_at(const Gaussian& density, const Bounds& bounds, const std::vector<int>& side) {
   const auto& [centre, covariance] = density;
   ActiveBounds active;
   for (Eigen::Index i = 0; i < centre.size(); ++i) {
@@ -57,7 +57,7 @@ BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::Matrix
   std::vector<int> side(n, 0);  // −1: at its lower bound, 1: at its upper one
   for (Eigen::Index change = 0; change < 4 * n + 1; ++change) {
     BoundedMaximum out{centre, 0.0};
-    const ActiveBounds active = hold({centre, covariance}, {lower, upper}, side);
+    const ActiveBounds active = active_at({centre, covariance}, {lower, upper}, side);
     if (!active.at.empty()) {
       out.at += covariance(Eigen::all, active.at) * active.pull;
       out.below = 0.5 * active.excess.dot(active.pull);

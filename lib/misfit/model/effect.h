@@ -102,7 +102,7 @@ struct CoefficientSpec {
   /// discovery, where that raises the likelihood clearly.
   const char* drift_of = "";
   OfMeasurements measured_as = OfMeasurements::none;  ///< discovery refuses a `step` of which the measurements are no multiples
-  /// Of a strength that has only this one value besides 0: an output is delayed as a whole, or not at all. Discovery holds the strength at
+  /// Of a strength that has only this one value besides 0: an output is delayed as a whole, or not at all. Discovery fixes the strength at
   /// it where the data allow that, and refuses the effect where they want a part of it. 0: any strength is possible.
   double whole = 0.0;
   const char* whole_of = "";       ///< role of an input: `whole` is then relative to the model's gain from it to the first port

@@ -140,7 +140,8 @@ class Reader {
       }
       rows_.push_back(i);
     }
-    if (rows_.size() < t.size()) out_.notes.push_back(std::to_string(t.size() - rows_.size()) + " rows without time dropped");
+    if (rows_.size() < t.size())
+      out_.notes.push_back(counted(t.size() - rows_.size(), "row without time dropped", "rows without time dropped"));
     if (rows_.size() < 2)
       throw RunError("experiment '" + shown(study_.name) + "': " + std::to_string(rows_.size()) +
                      " samples with a time are not a recording");

@@ -259,12 +259,23 @@ StudyModel read_model(const Study& study, const Registry& registry) {
   return out;
 }
 
-std::string name_in_study(const Study& study, const Words& names, const std::string& parameter) {
-  const std::string wanted = name_in_model(names, parameter);
-  const auto& all = study.parameters;
+namespace {
+
+/// The key of `all` that stands for it; its own name where none does.
+template <class Map>
+std::string key_for(const Map& all, const Words& names, const std::string& own) {
+  const std::string wanted = name_in_model(names, own);
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return name_in_model(names, entry.first) == wanted; });
-  return found == all.end() ? parameter : found->first;
+  return found == all.end() ? own : found->first;
 }
+
+}  // namespace
+
+std::string name_in_study(const Study& study, const Words& names, const std::string& parameter) {
+  return key_for(study.parameters, names, parameter);
+}
+
+std::string curve_in_study(const Study& study, const Words& names, const std::string& curve) { return key_for(study.curves, names, curve); }
 
 std::optional<ModelRequest> regression_form(const ModelRequest& request, const Registry& registry, std::vector<std::string>& left_out) {
   const SystemSpec own = registry.system(request.system, request.system_where).make(request.options)->spec();

@@ -29,6 +29,8 @@ struct RigEntry {
 
 /// How [parameters] of the study calls a parameter of the model, of parameter_names(); its name in the model where nothing is said of it.
 [[nodiscard]] std::string name_in_study(const Study& study, const std::map<std::string, std::string>& names, const std::string& parameter);
+/// The same of [curves].
+[[nodiscard]] std::string curve_in_study(const Study& study, const std::map<std::string, std::string>& names, const std::string& curve);
 
 /// The same request in the system's regression form (SystemSpec::regression): for sliding_bin. Curves keep their places under the names of
 /// that form; effects with free coefficients other than the static and damping curves are left out, and named in `left_out`. nullopt if the

@@ -142,8 +142,8 @@ std::vector<std::string> limit_remarks(const std::string& header, const std::vec
   const auto [low, high] = std::minmax_element(known.begin(), known.end());
   for (const bool upper : {true, false}) {
     const Stands stands = longest_stands(values, upper ? *high : *low);
-    constexpr std::size_t min_held_samples = 10;
-    if (stands.at < min_held_samples || stands.at < 2 * stands.elsewhere) continue;
+    constexpr std::size_t fewest_at_limit = 10;
+    if (stands.at < fewest_at_limit || stands.at < 2 * stands.elsewhere) continue;
     out.push_back(fmt::format("column '{}' stays at its {} value, {}, for up to {} samples: the signal may saturate, or simply rest there",
                               header, upper ? "highest" : "lowest", format_value(upper ? *high : *low), stands.at));
   }

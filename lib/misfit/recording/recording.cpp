@@ -108,7 +108,8 @@ class ColumnClassifier {
       s.is_stepwise = s.repeat_share > stepwise_share && !is_coarsely_digitised(column.values, s.resolution);
     }
     if (s.missing > 0)
-      out_.remarks.push_back(fmt::format("column '{}': {} of {} values are missing", s.header, s.missing, column.values.size()));
+      out_.remarks.push_back(
+          fmt::format("column '{}': {} of {} values {} missing", s.header, s.missing, column.values.size(), s.missing == 1 ? "is" : "are"));
     return s;
   }
 

@@ -70,10 +70,10 @@ void find_gaps(const std::vector<double>& t, RecordingTime& out) {
   if (out.gaps.empty()) return;
   const auto longest =
       std::max_element(out.gaps.begin(), out.gaps.end(), [](const Gap& a, const Gap& b) { return a.to - a.from < b.to - b.from; });
-  out.remarks.push_back(fmt::format(
-      "{} in time, the longest {} s, after t = {} s: the model runs across short gaps, and the recording is split at long ones "
-      "(misfit help data)",
-      counted(out.gaps.size(), "gap", "gaps"), format_value(longest->to - longest->from), format_to_step(longest->from, out.step)));
+  out.remarks.push_back(
+      fmt::format("{} {} s, after t = {} s: the model runs across short gaps, and the recording is split at long ones (misfit help data)",
+                  out.gaps.size() == 1 ? "1 gap in time, of" : fmt::format("{} gaps in time, the longest", out.gaps.size()),
+                  format_value(longest->to - longest->from), format_to_step(longest->from, out.step)));
 }
 
 }  // namespace

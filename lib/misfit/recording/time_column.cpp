@@ -49,7 +49,7 @@ std::string counting_column(const std::vector<ColumnSurvey>& columns, const Loos
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::vector<double>& values = table.columns[i].values;
     if (columns[i].use == ColumnUse::unused && increasing_share(values) == 1.0 && is_integer(finite(values)))
-      return " ('" + table.columns[i].header + "' counts rows, but over which interval?)";
+      return " ('" + columns[i].header + "' counts rows, but over which interval?)";
   }
   return "";
 }

@@ -62,7 +62,7 @@ Panel evidence_panel(const std::vector<Candidate>& candidates, std::size_t count
 Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t most) {
   Figure figure;
   figure.name = "candidates";
-  figure.title = "Candidate effects";
+  figure.title = "What could be missing";
   figure.caption =
       "Left, drop = 2 (log-likelihood with the effect − without), each at its maximum. Predicted: by one Gauss–Newton step; "
       "actual: after refitting all parameters. Right, p-value corrected for all families tested: only candidates beyond the dashed line "

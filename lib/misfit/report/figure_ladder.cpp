@@ -209,7 +209,7 @@ void set_range(Panel& panel) {
 Figure ladder_figure(const Ladder& ladder) {
   Figure figure;
   figure.name = "ladder";
-  figure.title = "Model ladder: unexplained force and prediction errors";
+  figure.title = "Ladder: unexplained force and prediction errors";
   figure.caption =
       "Each rung adds one effect to its parent. Drop = 2 (log-likelihood with the effect − without); a change of system has none. The "
       "random "

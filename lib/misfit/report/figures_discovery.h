@@ -10,7 +10,7 @@
 namespace misfit::report {
 
 /// What every rung of the ladder brings and leaves unexplained: predicted and actual drop; the random force ± sigma; the RMS of every
-/// channel one step and eight steps ahead, in its unit, or where the systems of the ladder predict different channels over that of the
+/// channel one sample and eight samples ahead, in its unit, or where the systems of the ladder predict different channels over that of the
 /// first rung that has the channel; the trim with its 95 % interval.
 [[nodiscard]] Figure ladder_figure(const Ladder& ladder);
 

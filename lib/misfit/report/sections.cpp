@@ -137,8 +137,8 @@ void notes_section(const ReportInput& input, Page& page) {
   out.heading("Data notes");
   if (notes.empty()) {
     out.paragraph(
-        "No notes on the data. Measurements that a method rejected or left out are under Results, How the methods ended, and under "
-        "Parameters.");
+        "No notes on the data. Measurements that a method rejected or left out are under Results (How the methods ended, and their "
+        "warnings) and Parameters.");
   }
   out.list({notes});
   page.show(out);

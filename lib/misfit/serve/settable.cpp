@@ -66,9 +66,11 @@ Settable settable_of(const Session& session) {
   for (const misfit::Parameter& p : model.parameters) {
     if (p.curve < 0) out.parameters.push_back({p.name, p.unit, p.free});
   }
+  const auto names = parameter_names(request, session.registry);
   for (const misfit::Curve& c : model.curves) {
     out.parameters.push_back({c.name, c.unit, model.parameters[c.first].free});
-    out.curves.push_back({c.name, roughness_unit(c), c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
+    out.curves.push_back({c.name, curve_in_study(session.study, names, c.name), roughness_unit(c),
+                          c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
   }
   const std::vector<ExperimentStudy>& all = session.study.experiments;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -97,8 +99,9 @@ std::string setting_of(const Settable& settable, const std::string& what, const 
     if (value != "true" && value != "false") throw InputError("value: true or false is expected");
     return fmt::format("parameters.{}.free={}", toml_key(name), value == "true");
   }
-  if (what == "roughness" && has_name(settable.curves, name))
-    return fmt::format("curves.{}.roughness={}", toml_key(name), roughness_of(value));
+  const auto curve = std::find_if(settable.curves.begin(), settable.curves.end(), [&](const auto& one) { return one.name == name; });
+  if (what == "roughness" && curve != settable.curves.end())
+    return fmt::format("curves.{}.roughness={}", toml_key(curve->in_study), roughness_of(value));
   if (what == "validation" && std::find(experiments.begin(), experiments.end(), name) != experiments.end())
     return fmt::format("experiment.{}.validation={}", toml_key(name), interval_of(value));
   throw InputError("what, name: \"free\" of a parameter, \"roughness\" of a curve or \"validation\" of an experiment is expected");

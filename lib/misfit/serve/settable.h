@@ -14,8 +14,9 @@ struct Settable {
     bool free = false;
   };
   struct Curve {
-    std::string name, unit;  ///< of its roughness: quantity^3/curve^2
-    std::string roughness;   ///< "auto", or a number
+    std::string name, in_study;  ///< in the model; what [curves] of the study calls it
+    std::string unit;            ///< of its roughness: quantity^3/curve^2
+    std::string roughness;       ///< "auto", or a number
   };
   std::vector<Parameter> parameters;  ///< a curve as a whole is one, too
   std::vector<Curve> curves;

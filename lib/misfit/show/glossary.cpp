@@ -52,9 +52,9 @@ Glossary further_glossary() {
       {"candidate", "an effect, or an unknown curve, that the model may lack"},
       {"cell", "one combination of the shapes at which a candidate is tested; effective: how many independent tests the cells are worth"},
       {"sweep", "the static sweep: the rig at known angles, from which the camera is calibrated"},
-      {"alias",
-       "a candidate that imitates the missing effect: it explains much, but with it a curve of a quantity that it reads is still "
-       "significant"}};
+      {"imitation",
+       "a candidate that explains much, but with which a curve of a quantity that it reads is still significant: it may only imitate the "
+       "missing effect"}};
 }
 
 }  // namespace misfit

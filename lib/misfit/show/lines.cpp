@@ -145,7 +145,9 @@ std::string line_of(const Discovery& d) {
   if (!d.unexplained_port.empty())
     return fmt::format("{}: {} that depends on {} is of unknown form", tested, unexplained_place(d), d.unexplained_quantity);
   constexpr double significant = 0.01;
-  const std::string why = best.p_value < significant && !best.why.empty() ? ", rejected: " + best.why.substr(0, best.why.find(": ")) : "";
+  const bool decided = d.outcome != SearchOutcome::not_decided && d.outcome != SearchOutcome::not_finished;
+  const bool rejected = decided && best.p_value < significant && best.actual_drop && !best.why.empty();
+  const std::string why = rejected ? ", rejected: " + best.why.substr(0, best.why.find(": ")) : "";
   return fmt::format("{}; smallest p: {} ({}){}", tested, name, p_equals(best.p_value), why);
 }
 

@@ -190,7 +190,7 @@ class VerdictBuilder {
       for (const Fit& fit : *in_.fits) why.push_back(fit.method + " " + to_string(fit.status) + ": " + fit.message);
     }
     say(VerdictKind::no_result,
-        why.empty() ? "no method was asked for" : "no method gives a result: " + fmt::format("{}", fmt::join(why, "; ")), command("fit"));
+        why.empty() ? "no method was asked for" : "no method gives a result: " + fmt::format("{}", fmt::join(why, "; ")), "");
   }
 
   /// What fits and diagnosis alone say.
@@ -268,11 +268,13 @@ class VerdictBuilder {
     return nullptr;
   }
 
+  /// " X can be added …"; empty where what is held out has spoken against it.
   [[nodiscard]] static std::string by_hand(const Candidate& rejected) {
-    return effect_at(rejected.effect, rejected.roles) + " can be added by hand and judged by its held-out gain";
+    if (rejected.why.find("the held-out log-likelihood") != std::string::npos) return "";
+    return effect_at(rejected.effect, rejected.roles) + " can be added by hand, to compare the errors before and after";
   }
   [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
-    return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
+    return by_hand(rejected).empty() ? "" : command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
   }
 
   void nothing_accepted(const Discovery& d) {
@@ -291,11 +293,11 @@ class VerdictBuilder {
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
-      added("whether more is missing is not decided; " + best_rejected(best) + "; " + by_hand(best), add_by_hand(best),
-            VerdictKind::not_decided);
+      added("whether more is missing is not decided; " + best_rejected(best) + (by_hand(best).empty() ? "" : "; " + by_hand(best)),
+            add_by_hand(best), VerdictKind::not_decided);
     } else if (d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
-      say(VerdictKind::not_decided, as_sentence(d.verdict) + " " + by_hand(best), add_by_hand(best));
+      say(VerdictKind::not_decided, as_sentence(d.verdict) + (by_hand(best).empty() ? "" : " " + by_hand(best)), add_by_hand(best));
     } else if (d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, as_sentence(d.verdict) + " Write one as a formula under [effects]", "misfit help study");
     } else if (effects_added_) {

@@ -151,7 +151,7 @@ std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
 }
 
 /// "c is fixed at 0.5 1/s: the curve takes over what it does".
-std::string fixed_parameters_in_words(const std::map<std::string, Estimate>& held) {
+std::string taken_over_in_words(const std::map<std::string, Estimate>& held) {
   std::string out;
   for (const auto& [name, e] : held)
     out += (out.empty() ? "" : "; ") + name + " is fixed at " + in_display_unit(e.value, e.unit) + ": the curve takes over what it does";
@@ -321,7 +321,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
   } else {
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
-    if (from) append_note(rung.note, fixed_parameters_in_words(from->fixed_in_model));
+    if (from) append_note(rung.note, taken_over_in_words(from->fixed_in_model));
     if (from) rung.roles = from->roles;
     if (from) rung.also = from->also;
     if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));

@@ -157,9 +157,9 @@ void report_gaps(const FilterEstimate& estimate, Fit& fit) {
     const std::optional<Gaps> gaps = gaps_of(estimate.data[e], estimate.traces[e]);
     if (!gaps || gaps->missing == 0) continue;
     const auto missing = static_cast<double>(gaps->missing);
-    fit.facts["gaps: " + signals.name] = std::to_string(gaps->missing) + " samples (" +
+    fit.facts["gaps: " + signals.name] = counted(gaps->missing, "sample (", "samples (") +
                                          format_value(100.0 * missing / static_cast<double>(signals.samples())) +
-                                         " %) are missing; the filter predicts across them";
+                                         " %) missing; the filter predicts across them";
     if (gaps->extreme < fewest_extreme || static_cast<double>(gaps->extreme) <= clearly_more * by_chance * missing) continue;
     fit.warnings.push_back("experiment '" + signals.name + "': the gaps are not random: in " + std::to_string(gaps->extreme) + " of " +
                            std::to_string(gaps->missing) +

@@ -77,7 +77,7 @@ struct FilterTrace {
 };
 
 /// Whitened residuals (predicted − measured)/√S of the counted measurements and their derivatives by the free parameters with the gains
-/// held.
+/// fixed.
 struct FilterJacobian {
   RowMatrix J;                     ///< rows × columns
   Eigen::VectorXd r;               ///< rows

@@ -82,7 +82,7 @@ std::string words_on(const Errors& errors) {
   for (std::size_t l = 0; l < lengths; ++l) {
     if (errors.diverged[l] == 0) continue;
     out += out.empty() ? "" : "; ";
-    out += fmt::format("{} of {} free runs diverge within {}: ", errors.diverged[l], errors.runs[l],
+    out += fmt::format("{} of {} predictions diverge within {}: ", errors.diverged[l], errors.runs[l],
                        counted(static_cast<std::size_t>(kLadderSteps[l]), "sample", "samples"));
     out += too_few(errors, l) ? "no error is given there" : "they are not in its error";
   }

@@ -10,14 +10,14 @@ namespace misfit {
 
 /// Errors of free runs from the filter's states, by length.
 struct KStepErrors {
-  std::map<std::string, std::vector<double>> rms;  ///< per channel at 1, 2, 4, … steps (kLadderSteps), in SI; NaN: none, or too few runs
+  std::map<std::string, std::vector<double>> rms;  ///< per channel at 1, 2, 4, … samples (kLadderSteps), in SI; NaN: none, or too few runs
   std::vector<std::size_t> runs, diverged;         ///< per length: that the recording is long enough for, and of these the failed ones
   std::string words;                               ///< on the runs that diverge; empty: none does
 };
 
-/// RMS of predictions 1, 2, 4, … steps ahead per channel over the counted samples: the filtered state run on without further measurements,
-/// from where it is settled (settled.h).
-/// A run that diverges has no error to count. Where more than 3 % do, what is left says how good the good ones are: no RMS is given.
+/// RMS of predictions 1, 2, 4, … samples ahead per channel over the counted samples: the filtered state run on without further
+/// measurements, from where it is settled (settled.h). A run that diverges has no error to count. Where more than 3 % do, what is left says
+/// how good the good ones are: no RMS is given.
 [[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation = false);
 
 }  // namespace misfit

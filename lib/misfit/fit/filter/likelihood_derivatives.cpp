@@ -160,7 +160,7 @@ std::string failure_of(const std::vector<OneDerivative>& parts) {
   const std::string of = " of " + std::to_string(parts.size()) + " directions";
   if (torn > 0) return "in " + std::to_string(torn) + of + " the filter diverges for small parameter changes";
   if (nonlinear > 0)
-    return "in " + std::to_string(nonlinear) + of + " the filter is too nonlinear for more than a tenth of the measurements";
+    return "in " + std::to_string(nonlinear) + of + " the filter's linearisation is not valid for more than a tenth of the measurements";
   return {};
 }
 

@@ -344,9 +344,9 @@ class Estimator {
             : 0.0;
     stuck_ = misfit_of(end);
     std::string unsettled;
-    if (!last_.converged || left > near) unsettled = "the search snapshot before it came to a maximum";
+    if (!last_.converged || left > near) unsettled = "the search ended before it came to a maximum";
     if (first_misfit_ && !(std::abs(*first_misfit_ - *stuck_) < alike))
-      unsettled = "two searches from these values snapshot at different points";
+      unsettled = "two searches from these values ended at different points";
     return why_undetermined(which, unsettled, end);
   }
 

@@ -136,6 +136,10 @@ phone.addEventListener('change', () => { if (!phone.matches) at('verdict').query
 const failure = ({ status }) => (status === 2 ? 'refused: its message says what is wrong with the study or the command'
   : `not finished (status ${status}): its message says why`);
 
+/** How a command failed, by its exit status. */
+const failure = ({ status }) => (status === 2 ? 'refused: its message says what is wrong with the study or the command'
+  : `not finished (status ${status}): its message says why`);
+
 /** What misfit says against an effect, without its name again; the whole sentence is the title. */
 function reason(why) {
   const said = why.replace(/^effect '[^']*' (is )?/, '').replace(/^does not suit this model: (effect '[^']*': )?/, '').replace(/ \(.*\)$/, '');
@@ -1045,7 +1049,7 @@ function choose(model) {
   showAll().catch(say);
 }
 
-/** The study's own text is that of model 0. */
+/** The study's own text is that of its own model (rung 0). */
 function correct() {
   here.tab = 'study';
   choose(0);

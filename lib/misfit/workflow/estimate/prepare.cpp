@@ -116,12 +116,14 @@ std::vector<Signals> read_experiments(Session& session, const Model& model, Gaps
   return out;
 }
 
-void start_from_tables(const Session& session, Model& model) {
+void start_from_tables(const Session& session, const ModelRequest& request, Model& model) {
+  const auto names = parameter_names(request, session.registry);
   for (const auto& [name, curve] : session.study.curves) {
-    const Curve* target = model.find_curve(name);
+    const auto known = names.find(name);
+    const Curve* target = known == names.end() ? nullptr : model.find_curve(known->second);
     if (!curve.table || target == nullptr) continue;
     const Table table = read_csv(*curve.table);
-    set_curve(model, name, table.values(curve.of, target->of_unit), table.values(name, target->unit));
+    set_curve(model, target->name, table.values(curve.of, target->of_unit), table.values(name, target->unit));
   }
 }
 
@@ -134,7 +136,7 @@ Prepared prepare_request(Session& session, ModelRequest request, Gaps gaps) {
   choose_all_knots(request, session.registry, out.experiments, default_intervals);
   out.model = assemble(request, session.registry);
   out.request = std::move(request);
-  start_from_tables(session, out.model);
+  start_from_tables(session, out.request, out.model);
   return out;
 }
 

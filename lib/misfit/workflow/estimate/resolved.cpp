@@ -110,19 +110,10 @@ class Resolved {
     return toml_string(toml_number(knot) + " " + plain_si(unit));
   }
 
-  /// What the study calls it.
-  std::string curve_in_study(const std::string& in_model) const {
-    for (const auto& [name, study] : session_.study.curves) {
-      const auto known = names_.find(name);
-      if (known != names_.end() && known->second == in_model) return name;
-    }
-    return in_model;
-  }
-
   void set_curve(const Curve& curve) {
     std::vector<std::string> knots;
     for (const double knot : curve.spline.breakpoints()) knots.push_back(knot_text(knot, curve.of_unit));
-    const std::string name = curve_in_study(curve.name);
+    const std::string name = curve_in_study(session_.study, names_, curve.name);
     document_.set({"curves", name, "of"}, toml_string(curve.of));
     document_.set({"curves", name, "knots"}, toml_list(knots));
     document_.set({"curves", name, "roughness"}, curve.roughness ? toml_number(*curve.roughness) : "\"auto\"");

@@ -58,8 +58,8 @@ ModelRequest without_effects(const Prepared& prepared, const std::set<std::size_
   return out;
 }
 
-/// Coefficients that the study holds, and shapes that it gives a start for.
-std::map<std::string, double> held(const Prepared& prepared, const BoundEffect& effect) {
+/// Coefficients that the study fixes, and shapes that it gives a start for.
+std::map<std::string, double> fixed_coefficients(const Prepared& prepared, const BoundEffect& effect) {
   const auto& coefficients = effect.effect->spec().coefficients;
   const std::vector<int> own = own_parameters(effect);
   std::map<std::string, double> out;
@@ -106,7 +106,8 @@ std::optional<ScannedStudy> scanned_study(Session& session, const Prepared& prep
     const ContainedFit contained = contained_fit(*without.filter);
     if (contains(prepared.model, contained)) out.contained = contained;
     for (const std::size_t i : wanted) {
-      const std::optional<ScannedStart> start = scanned_start(task, prepared.request.effects[i], held(prepared, prepared.model.effects[i]));
+      const std::optional<ScannedStart> start =
+          scanned_start(task, prepared.request.effects[i], fixed_coefficients(prepared, prepared.model.effects[i]));
       if (!start) continue;
       begin_there(prepared, i, *start, out);
       if (wanted.size() > 1 || !out.contained || start->refit_values.size() != prepared.model.parameters.size()) continue;

@@ -53,7 +53,7 @@ bool is_free(const Model& model, const std::string& name) {
   return i >= 0 && model.parameters[i].free;
 }
 
-void require_held(const Source& where, const Model& model, const std::string& name) {
+void require_fixed(const Source& where, const Model& model, const std::string& name) {
   if (!is_free(model, name)) return;
   throw InputError(where, "'" + shown(name) +
                               "' is estimated by this study: only what is fixed can be perturbed (fix it in [parameters], or leave it out "
@@ -69,7 +69,7 @@ Rig::Rig(Session& session, const Model& model) {
   if (uncertainty.calibrated_camera) add_calibration(session, model);
   if (perturbations_.names().empty())
     throw InputError(uncertainty.where, "nothing is perturbed: perturb = { R = \"0.1524 m\", … } says what, and how far");
-  note_held_camera(model);
+  note_fixed_camera(model);
   const bool from_image = nominal_.calibration.has_value();
   if (uncertainty.recalibrate) {
     if (!from_image || !session.study.camera.from_sweep())
@@ -86,7 +86,7 @@ Rig::Rig(Session& session, const Model& model) {
 }
 
 /// Where the system predicts the image, the calibrated camera is estimated by the study's own fits.
-void Rig::note_held_camera(const Model& model) {
+void Rig::note_fixed_camera(const Model& model) {
   for (const std::string& name : perturbations_.names()) {
     if (!is_camera(name) || model.find_parameter(name) < 0) continue;
     notes_.emplace_back(
@@ -119,7 +119,7 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
   const Source& where = request.number.where;
   if (of_sweep(request.name) && !known_.contains(request.name))
     throw InputError(where, request.name + " acts through the calibration alone: recalibrate = true calibrates again in every run");
-  require_held(where, model, request.name);
+  require_fixed(where, model, request.name);
   const auto known = known_.find(request.name);
   if (known == known_.end()) {
     std::vector<std::string> valid;
@@ -143,7 +143,7 @@ void Rig::add_calibration(const Session& session, const Model& model) {
   const Calibration& calibration = *nominal_.calibration;
   CorrelatedPerturbation group{"calibration", calibration.names, {}, calibration.covariance};
   for (const std::string& name : calibration.names) {
-    require_held(where, model, name);
+    require_fixed(where, model, name);
     const auto& single = perturbations_.single;
     if (std::any_of(single.begin(), single.end(), [&](const Perturbation& p) { return p.name == name; }))
       throw InputError(where, "'" + shown(name) + "' is in perturb as well: give it one of the two");
@@ -186,7 +186,7 @@ PerturbedRig Rig::at(const std::vector<double>& errors) const {
   return out;
 }
 
-void hold_perturbed_camera(Session& session) {
+void fix_perturbed_camera(Session& session) {
   const UncertaintyStudy& uncertainty = *session.study.uncertainty;
   const auto hold = [&](const std::string& name) {
     auto& parameters = session.model.request.parameters;

@@ -45,7 +45,7 @@ class Rig {
   void list_known(Session& session, const Model& model);
   void add(const PerturbStudy& request, const Model& model);
   void add_calibration(const Session& session, const Model& model);
-  void note_held_camera(const Model& model);
+  void note_fixed_camera(const Model& model);
   void calibrate_again(const std::vector<std::string>& names, const std::vector<double>& errors, PerturbedRig& rig) const;
   void set(PerturbedRig& rig, const std::string& name, double error) const;
 
@@ -60,6 +60,6 @@ class Rig {
 
 /// Camera parameters that the study perturbs, where its system would estimate them with the calibration as their prior: they are fixed, so
 /// that they can be perturbed. Called before the model is prepared.
-void hold_perturbed_camera(Session& session);
+void fix_perturbed_camera(Session& session);
 
 }  // namespace misfit

@@ -28,7 +28,7 @@ struct StudyChain::Recording {
 StudyChain::~StudyChain() = default;
 
 StudyChain::StudyChain(Session& session, const std::string& method) {
-  hold_perturbed_camera(session);
+  fix_perturbed_camera(session);
   make_nominal(session, method);
   if (!nominal_.usable()) throw RunError(method + " " + to_string(nominal_.status) + ": " + nominal_.message);
   read_recordings(session);
