@@ -60,7 +60,7 @@ TEST_F(UnfinishedDiscovery, ARoundWithoutTimeEndsInWords) {
   options.round_limit = 1e-6;
   const Discovery found = discover(options);
   EXPECT_EQ(found.outcome, SearchOutcome::not_finished);
-  EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent: the test for effects"));
+  EXPECT_THAT(found.verdict, StartsWith("Not finished: the time limit of 1e-06 s for this round of discover was spent before"));
   for (const Candidate& c : found.candidates) EXPECT_FALSE(c.accepted);
 }
 

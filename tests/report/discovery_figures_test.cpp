@@ -152,7 +152,7 @@ TEST(LadderFigure, ChannelsOfOneSystemKeepTheirUnits) {
   std::vector<std::string> units;
   for (const Panel& panel : figure.panels) units.push_back(panel.y_unit);
   EXPECT_EQ(units, (std::vector<std::string>{"", "N m", "px", "px", "deg"}));
-  EXPECT_EQ(find(figure, "P_y_RMS__1_step")->y, (std::vector<double>{1.78, 1.76}));
+  EXPECT_EQ(find(figure, "P_y_RMS__one_sample_ahead")->y, (std::vector<double>{1.78, 1.76}));
 }
 
 TEST(LadderFigure, RandomForcesOfDifferentUnitsHaveAPanelEach) {
@@ -187,8 +187,8 @@ TEST(LadderFigure, ChannelsOfDifferentSystemsAreDrawnOverTheirFirstValue) {
   std::vector<std::string> units;
   for (const Panel& panel : figure.panels) units.push_back(panel.y_unit);
   EXPECT_EQ(units, (std::vector<std::string>{"", "N m", "% of first", "% of first", "deg"}));
-  EXPECT_EQ(find(figure, "eta_RMS__8_steps")->y, std::vector<double>{100.0});
-  EXPECT_NEAR(find(figure, "P_y_RMS__1_step")->y.at(1), 100.0 * 1.76 / 1.78, 1e-9);
+  EXPECT_EQ(find(figure, "eta_RMS__8_samples_ahead")->y, std::vector<double>{100.0});
+  EXPECT_NEAR(find(figure, "P_y_RMS__one_sample_ahead")->y.at(1), 100.0 * 1.76 / 1.78, 1e-9);
 }
 
 TEST(LadderFigure, DropsStandSideBySideWhereThereAreAny) {

@@ -71,7 +71,12 @@ TEST(LineOfADiscovery, NamesTheAcceptedEffectElseThatOfTheSmallestP) {
   EXPECT_THAT(line_of(d), testing::StartsWith("1 effect tested, none accepted"));
   d.candidates.front().p_value = 1e-9;
   d.candidates.front().why = "its strength is not determined: drag = 1 ± 3";
+  EXPECT_THAT(line_of(d), testing::EndsWith("smallest p: lag (p = 1e-09)")) << "not refitted, so not judged";
+  d.candidates.front().actual_drop = 30.0;
   EXPECT_THAT(line_of(d), testing::EndsWith("smallest p: lag (p = 1e-09), rejected: its strength is not determined"));
+  d.outcome = SearchOutcome::not_decided;
+  EXPECT_THAT(line_of(d), testing::EndsWith("smallest p: lag (p = 1e-09)"));
+  d.outcome = SearchOutcome::none_missing;
   d.unexplained_port = "dw/dt";
   d.unexplained_quantity = "w";
   EXPECT_THAT(line_of(d), testing::HasSubstr("a force on dw/dt that depends on w is of unknown form"));
