@@ -136,10 +136,6 @@ phone.addEventListener('change', () => { if (!phone.matches) at('verdict').query
 const failure = ({ status }) => (status === 2 ? 'refused: its message says what is wrong with the study or the command'
   : `not finished (status ${status}): its message says why`);
 
-/** How a command failed, by its exit status. */
-const failure = ({ status }) => (status === 2 ? 'refused: its message says what is wrong with the study or the command'
-  : `not finished (status ${status}): its message says why`);
-
 /** What misfit says against an effect, without its name again; the whole sentence is the title. */
 function reason(why) {
   const said = why.replace(/^effect '[^']*' (is )?/, '').replace(/^does not suit this model: (effect '[^']*': )?/, '').replace(/ \(.*\)$/, '');
