@@ -1,7 +1,10 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
 import { askingButton, blocks, breakable, element, fittedTable, plain, shown, shownPlace, words } from '/dom.js';
 import { PairCells, SamplesByCell, rangeOf } from '/cells.js';
-import { Figure, TimeGroup, lowerBound, nearest, onScreenChange, valueAt } from '/figure.js';
+import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
+import { Film } from '/film.js';
+import { Began, JobBox } from '/job.js';
+import { roughnessSlider } from '/slider.js';
 import { get, kept, live, outdate, post, Unreachable } from '/server.js';
 import { editor } from '/editor.js';
 
@@ -132,10 +135,6 @@ function showVerdict(all) {
 }
 phone.addEventListener('change', () => { if (!phone.matches) at('verdict').querySelector('details')?.setAttribute('open', ''); });
 
-/** How a command failed, by its exit status. */
-const failure = ({ status }) => (status === 2 ? 'refused: its message says what is wrong with the study or the command'
-  : `not finished (status ${status}): its message says why`);
-
 /** What misfit says against an effect, without its name again; the whole sentence is the title. */
 function reason(why) {
   const said = why.replace(/^effect '[^']*' (is )?/, '').replace(/^does not suit this model: (effect '[^']*': )?/, '').replace(/ \(.*\)$/, '');
@@ -151,157 +150,14 @@ function showJob(job) {
   at('stop').hidden = !running;
   at('stop').textContent = job.stopping ? 'Stop at once' : 'Stop';
   began.follow(job);
-  jobBox.show(job, !running && here.closed === job.number);
+  jobBox.show(job);
   if (focused === document.body || !(focused.disabled || focused.hidden)) return;
   if (began.owns(job)) began.takeFocus(running);
   else at('job').focus({ preventScroll: true }); // another page's: a key pressed here must not stop it
 }
 
-const setText = (node, text) => { if (node.textContent !== text) node.textContent = text; };
 
-/** Adds what has come: what was there, and is read, scrolled or chosen, stays. */
-function grow(node, text) {
-  if (text.startsWith(node.data)) node.appendData(text.slice(node.data.length));
-  else node.data = text;
-}
-
-/** What a command does and says, in nodes that stay. */
-class JobBox {
-  constructor() {
-    this.state = element('b');
-    this.doing = element('span');
-    this.progress = element('progress', { max: 1, 'aria-label': 'part that is done' });
-    this.left = element('span');
-    this.close = element('button', { class: 'closes', title: 'Hide what the command said; it stays in session.sh', onclick: () => { at('job').hidden = at('command').hidden = true; here.closed = this.number; } }, 'Close');
-    this.failure = element('pre', { class: 'warning' });
-    this.costs = element('div', { class: 'costs' });
-    this.notes = document.createTextNode('');
-    this.output = document.createTextNode('');
-    this.said = element('pre', { tabindex: 0 }, this.notes, this.output);
-    this.more = element('details', {}, element('summary', {}, 'What it says'), this.said);
-    at('job').append(element('p', {}, this.state, this.doing, this.progress, this.left, ' ', this.close), this.failure, this.more, this.costs);
-  }
-  show(job, closed) {
-    const running = job.state === 'running', box = at('job');
-    at('command').hidden = box.hidden = job.state === 'none' || closed;
-    if (job.state === 'none') return;
-    this.number = job.number;
-    setText(at('command'), job.command);
-    box.className = job.state;
-    Object.assign(box.dataset, { state: job.state, number: job.number });
-    const end = { running: job.stopping ? 'stopping' : 'at work', done: 'done', stopped: 'stopped: what was finished is kept', failed: failure(job) };
-    setText(this.state, end[job.state]);
-    setText(this.doing, ` · ${shown(job.seconds, 3)} s${running && job.work ? ` · ${job.work} ` : ''}`);
-    this.progress.hidden = !running || !job.work || job.part === null;
-    if (!this.progress.hidden) this.progress.value = job.part;
-    setText(this.left, running && job.work && job.left !== null ? ` at most ${shown(job.left, 2)} s left` : '');
-    this.close.hidden = running;
-    this.failure.hidden = job.state !== 'failed';
-    setText(this.failure, job.state === 'failed' ? job.notes.slice(-5).join('\n') : '');
-    this.more.hidden = job.notes.length === 0 && job.output === '';
-    grow(this.notes, job.notes.map((note) => `${note}\n`).join(''));
-    grow(this.output, job.output);
-    this.showCosts(job.costs, running);
-  }
-  /** Beside what it does while it runs, then in what it says. */
-  showCosts(traces, running) {
-    this.costs.replaceChildren(...costs(traces));
-    if (running && this.costs.parentNode !== at('job')) at('job').append(this.costs);
-    if (!running && this.costs.parentNode !== this.more) this.said.before(this.costs);
-  }
-}
-const jobBox = new JobBox();
-
-/** How the searches of a command go on: the last two, in one line. */
-function costs(traces) {
-  const out = [];
-  for (const trace of traces.slice(-2)) {
-    if (trace.points.length < 2) continue;
-    out.push(element('figure', {}, sparkline(trace.points.map(([, value]) => value)),
-      element('figcaption', {}, `${trace.work}: ${trace.what} ${shown(trace.points[0][1], 6)} → ${shown(trace.points.at(-1)[1], 6)} in ${trace.points.length} iterations`)));
-  }
-  return out;
-}
-
-/** A line without axes; its numbers stand below it. */
-function sparkline(values) {
-  const low = Math.min(...values), high = Math.max(...values), span = high - low || 1;
-  const place = values.map((v, k) => `${((k / (values.length - 1)) * 270).toFixed(1)},${(56 - ((v - low) / span) * 52).toFixed(1)}`);
-  const out = at('sparkline').content.cloneNode(true);
-  out.querySelector('polyline').setAttribute('points', place.join(' '));
-  return out;
-}
-
-/** The state of the last command, at the button that began it: buttons have a data-key, by which they are found when a view is drawn anew. */
-class Began {
-  key = null;
-  number = null;
-  asks = false; // misfit has not answered yet
-  at = -Infinity; // when it was asked for
-  constructor() {
-    this.words = element('span', { 'aria-live': 'polite' });
-    this.clock = element('span', { 'aria-hidden': true });
-    this.stop = element('button', { class: 'stops', hidden: true, onclick: stop });
-    this.node = element('span', { class: 'began' }, this.words, this.clock, this.stop);
-  }
-  button() {
-    return this.key === null ? null : document.querySelector(`button[data-key="${CSS.escape(this.key)}"]`);
-  }
-  /** Behind its button; beside the buttons above behind all of them, so that none moves. */
-  place() {
-    const button = this.button(), bar = button?.closest('#work .buttons');
-    if (!button) return;
-    const hadFocus = this.node.contains(document.activeElement);
-    if (bar) {
-      if (this.node.parentNode !== bar) bar.append(this.node);
-    } else if (button.nextSibling !== this.node) button.after(this.node);
-    if (hadFocus && document.activeElement === document.body) this.stop.focus({ preventScroll: true });
-  }
-  say(words, { clock = '', bad = false, stop = '' } = {}) {
-    if (this.words.textContent !== words) this.words.textContent = words;
-    this.clock.textContent = clock;
-    this.node.classList.toggle('warning', bad);
-    this.stop.textContent = stop;
-    this.stop.hidden = stop === '' || this.node.closest('.buttons') !== null;
-    this.place();
-  }
-  asked(key) {
-    this.key = key;
-    this.at = performance.now();
-    this.number = null;
-    this.asks = true;
-    this.node.remove();
-    this.place();
-    this.say('asked for');
-  }
-  answered(job) {
-    this.number = job.number;
-    this.asks = false;
-  }
-  refused(error) {
-    this.asks = false;
-    this.say(error.message, { bad: true });
-    if (!this.button()) say(error);
-  }
-  owns(job) {
-    return this.asks || job.number === this.number;
-  }
-  follow(job) {
-    if (job.number !== this.number || job.state === 'none') return;
-    const clock = ` ${shown(job.seconds, 3)} s `;
-    if (job.state === 'running') this.say(job.stopping ? 'stopping' : 'at work', { clock, stop: job.stopping ? 'Stop at once' : 'Stop' });
-    else if (job.state === 'done') this.say('done', { clock });
-    else if (job.state === 'stopped') this.say('stopped', { clock });
-    else this.say(job.notes.at(-1) ?? failure(job), { bad: true });
-  }
-  /** Of a button that cannot be used any more: to what is next, the end of the command, or to what began it. */
-  takeFocus(running) {
-    const button = this.button();
-    const next = running ? [this.stop, at('stop')] : [button, at('job')];
-    next.find((one) => one?.isConnected && !one.disabled && !one.hidden)?.focus({ preventScroll: true });
-  }
-}
-const began = new Began();
+const jobBox = new JobBox(), began = new Began({ stop, say });
 
 async function stop(event) {
   if (event.detail === 0 && performance.now() - began.at < 500) return; // by a key: the Enter that began it, pressed twice
@@ -363,7 +219,7 @@ const channelsShown = () => here.motion.channels.filter((c) => c.experiment === 
 /** Plots that show the same as before stay as they are. */
 let timeDrawn = [];
 function showTime() {
-  film.show(channelsShown());
+  film.show(channelsShown(), here.state.films.indexOf(here.name), here.motion.methods[here.motion.method]);
   const what = [here.motion, missing(), here.name];
   if (what.some((one, k) => one !== timeDrawn[k])) drawTime();
   timeDrawn = what;
@@ -417,98 +273,7 @@ function putForce(added) {
   for (const node of before) node.remove();
 }
 
-/** The frame at the time cursor, or of a marked sample, with the markers as measured and as predicted. */
-class Film {
-  place = -1; // among the films of the study; −1: this experiment has none
-  t = null; // of the cursor
-  chosen = null; // of a marked sample
-  marks = [];
-  busy = false;
-  constructor() {
-    at('film').addEventListener('toggle', () => this.ask());
-  }
-  show(channels) {
-    this.pairs = markersIn(channels);
-    this.place = here.state.films.indexOf(here.name);
-    at('film').hidden = this.place < 0;
-    this.asked = null;
-    if (this.t === null) this.t = channels[0]?.figure.xs[0][0] ?? 0;
-    this.ask();
-  }
-  point(t) {
-    this.t = t;
-    this.chosen = null;
-    this.ask();
-  }
-  /** Of what is marked the sample nearest to the cursor is looked at, until the cursor moves on. */
-  mark({ intervals, times }) {
-    this.marks = intervals;
-    this.chosen = intervals.length === 0 ? null : times.length > 0 ? times[nearest(times, this.t ?? 0)] : within(intervals[0], this.t ?? 0);
-    this.ask();
-    this.tell();
-  }
-  /** One question at a time; the last place that was pointed at is asked for in the end. */
-  async ask() {
-    if (this.busy || this.place < 0 || !at('film').open) return;
-    this.busy = true;
-    try {
-      for (let t = this.chosen ?? this.t; t !== null && this.asked !== `${this.place} ${t}`; t = this.chosen ?? this.t) {
-        this.asked = `${this.place} ${t}`;
-        this.draw(await get('frame', { film: this.place, t }));
-        this.seen = t;
-        this.tell();
-      }
-    } catch (error) {
-      at('frame-words').textContent = error.message;
-    }
-    this.busy = false;
-  }
-  /** Whether the frame is of a marked sample. */
-  tell() {
-    at('frame-badge').hidden = !this.marks.some(([from, to]) => from <= this.seen && this.seen <= to);
-  }
-  draw(frame) {
-    at('frame').src = `data:image/jpeg;base64,${frame.jpeg}`;
-    at('marks').setAttribute('viewBox', `0 0 ${frame.width} ${frame.height}`);
-    this.putNodes();
-    const said = new Set([`Frame at ${timeShown(frame.t)} s`]), size = 0.02 * frame.width;
-    this.pairs.forEach((pair, k) => {
-      const [measured, predicted] = ['measured', 'predicted'].map((kind) => placeOf(pair, kind, frame)), [circle, cross] = this.nodes[k];
-      for (const [node, place] of [[circle, measured], [cross, predicted]]) node.style.display = place ? '' : 'none';
-      if (measured) for (const [key, value] of [['cx', measured[0]], ['cy', measured[1]], ['r', size]]) circle.setAttribute(key, value);
-      if (predicted) cross.setAttribute('d', `M${predicted[0] - size} ${predicted[1]}h${2 * size}M${predicted[0]} ${predicted[1] - size}v${2 * size}`);
-      if (measured) said.add('yellow: measured');
-      if (predicted) said.add(`blue: predicted by ${here.motion.methods[here.motion.method]}`);
-    });
-    at('frame-words').textContent = [...said].join(' · ');
-  }
-  /** A circle and a cross for each marker. */
-  putNodes() {
-    this.nodes ??= [[...at('marks').children]];
-    while (this.nodes.length < this.pairs.length) this.nodes.push(this.nodes[0].map((node) => node.cloneNode()));
-    at('marks').replaceChildren(...this.nodes.slice(0, Math.max(this.pairs.length, 1)).flat());
-    for (const node of this.nodes[0]) node.style.display = 'none';
-  }
-}
-
-const within = ([from, to], t) => Math.min(Math.max(t, from), to);
-
-/** Where markers are: P_y, P_z from the middle of the picture, to the left and downwards; or x_px, y_px, column and row, of several x_px_NAME. */
-function markersIn(channels) {
-  const figures = new Map(channels.map((c) => [c.name, c.figure])), out = [];
-  const add = (across, down, pixel) => { if (figures.has(across) && figures.has(down)) out.push({ figures: [figures.get(across), figures.get(down)], pixel }); };
-  add('P_y', 'P_z', (x, y, { width, height }) => [width / 2 - x + 0.5, height / 2 + y + 0.5]);
-  for (const name of figures.keys()) if (/^x_px(_|$)/.test(name)) add(name, name.replace('x', 'y'), (x, y) => [x + 0.5, y + 0.5]);
-  return out;
-}
-
-/** [px] null: there is none at the frame's time. */
-function placeOf({ figures, pixel }, kind, frame) {
-  const [x, y] = figures.map((figure) => valueAt(figure, kind, frame.t));
-  return x === undefined || y === undefined ? null : pixel(x, y, frame);
-}
-
-const film = new Film();
+const film = new Film(timeShown);
 time.oncursor = (t) => film.point(t);
 
 /** `fixed`: it stays when the mouse goes on. Nothing, and not fixed: what is fixed is seen again. */
@@ -801,61 +566,14 @@ function candidateTable(table, rows, last) {
 function showCurves(view, curves) {
   if (curves.figures.length === 0) nothing(view, 'This model has no curves; its parameters:');
   const figures = curves.figures.map((figure) => draw(view, figure, { height: 0.8 }));
-  figures.forEach((figure, k) => roughnessOf(curves.roughness.filter((path) => path.curves[0].figure === k), figures, figure.node));
+  const own = live && here.model === 0 && here.state.study.fault === null;
+  const set = (name, key) => (own && here.state.settable.curves.some((c) => c.name === name)
+    ? (value) => start(key, 'set', { what: 'roughness', name, value }) : undefined);
+  figures.forEach((figure, k) => roughnessSlider(curves.roughness.filter((path) => path.curves[0].figure === k), figures, figure.node, { set, idle: here.idle }));
   view.append(blocks(curves.blocks));
   if (!live) return;
   if (here.model !== 0) nothing(view, "Parameters are fixed and roughness is set with the study's own model (rung 0).");
   else if (here.state.study.fault === null) view.append(settings());
-}
-
-/** A slider for the roughness of a curve, by each of the methods that have one: the curve, and those derived from it, follow at once, by the
-    linearised fit. A refit is made by Set and Run. */
-function roughnessOf(paths, figures, parent) {
-  if (paths.length === 0) return;
-  let path = paths[paths.length - 1];
-  const slider = element('input', { type: 'range', min: 0, step: 'any', 'aria-label': `smoothness of ${path.curve}`, 'data-curve': path.curve, oninput: () => move() });
-  const said = element('output', {}), back = element('button', { onclick: () => begin() }, 'As fitted');
-  const setting = live && here.model === 0 && here.state.study.fault === null && here.state.settable.curves.some((c) => c.name === path.curve);
-  const key = `slider ${path.curve}`;
-  const set = setting ? element('button', { class: 'sets', 'data-key': key, disabled: !here.idle, title: 'writes it into the study; Run refits',
-    onclick: () => {
-      slider.removeAttribute('data-changed'); // it is in the study now
-      start(key, 'set', { what: 'roughness', name: path.curve, value: value().toPrecision(3) });
-    } }, 'Set') : null;
-  const methods = element('select', { 'aria-label': 'method', hidden: paths.length < 2, onchange: () => { path = paths[methods.value]; begin(); } },
-    ...paths.map((p, k) => element('option', { value: k, selected: p === path }, p.method)));
-  const used = () => nearest(path.roughness, path.used);
-  /** Of lists by roughness, between two of them. */
-  const between = (lists, mix) => {
-    const k = Math.min(Math.floor(slider.valueAsNumber), lists.length - 2), share = slider.valueAsNumber - k;
-    return mix(lists[k], lists[k + 1], share);
-  };
-  const mixed = (a, b, share) => a + share * (b - a);
-  const value = () => Math.exp(between(path.roughness.map(Math.log), mixed));
-  function move() {
-    const asFitted = slider.valueAsNumber === used();
-    slider.toggleAttribute('data-changed', !asFitted);
-    for (const figure of figures) figure.overlay = (figure.overlay ?? []).filter((s) => s.of !== slider); // other curves keep theirs
-    for (const c of asFitted ? [] : path.curves) {
-      const y = between(c.values, (a, b, share) => a.map((v, i) => (v === null || b[i] === null ? null : mixed(v, b[i], share))));
-      figures[c.figure]?.overlay.push({ of: slider, x: c.x, y, sorted: true, style: 'line', width: 2.5, colour: '#000000' });
-    }
-    for (const figure of figures) figure.redrawOver();
-    const support = between(path.support, mixed), freedom = path.freedom && `; ${path.freedom} effective degrees of freedom`;
-    said.replaceChildren(asFitted ? '' : 'Thick line: ', `roughness λ = ${shown(value(), 3)} `, words(path.unit), asFitted
-      ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}${freedom}`
-      : `, ${shown(value() / path.used, 2)} times as fitted; ${support < 0 ? 'less' : 'more'} likely by ${
-        shown(Math.abs(support), 2)} (log marginal likelihood). All other unknowns follow (linearised).`);
-    back.disabled = asFitted;
-  }
-  function begin() {
-    slider.max = path.roughness.length - 1;
-    slider.value = used();
-    move();
-  }
-  begin();
-  parent.append(element('div', { class: 'slider' }, element('span', { title: 'the key roughness of the curve: the larger it is, the smoother is the curve' }, 'Smoothness of ', words(path.label)), methods, element('span', { class: 'soft' }, 'rough'), slider,
-    element('span', { class: 'soft' }, 'smooth'), back, set, said));
 }
 
 /** What of the study's own model is estimated and how; each change is `misfit set`, the results are made anew by Run. */
