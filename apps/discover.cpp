@@ -40,8 +40,7 @@ LadderListener ladder_listener(ModelLadder& ladder, const Options& options) {
   } else {
     listener.discovered = [](const Discovery& discovery) { print_stage("discover", line_of(discovery)); };
     listener.added = [](const Rung& rung) {
-      print_stage("add", rung.added + ": " + line_of(rung) +
-                             "; the test whether it stays comes next");
+      print_stage("add", rung.added + ": " + line_of(rung) + "; the test whether it stays comes next");
     };
   }
   return listener;

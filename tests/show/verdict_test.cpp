@@ -188,7 +188,8 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
             "coulomb_friction was missing: with it the RMS error of w 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %); nothing "
             "more is found "
             "missing.");
-  EXPECT_THAT(v.where, EndsWith("(p = 1e-20); with coulomb_friction: p = 0.7."));
+  EXPECT_THAT(v.where, AllOf(testing::StartsWith("Without coulomb_friction, the model's dw/dt is "),
+                             EndsWith("(p = 1e-20); in the last model p = 0.7.")));
   EXPECT_THAT(v.next, IsEmpty());
 
   c.discovery.reset();
@@ -211,8 +212,8 @@ TEST(Verdict, EveryPortThatFailsIsNamedWithItsMostSignificantPlace) {
   c.add_effect();
   c.rung_diagnosis = c.diagnosis;
   for (ForceMap& map : c.rung_diagnosis->maps) map.p_corrected = 0.8;
-  EXPECT_THAT(c.verdict().where, AllOf(HasSubstr("(p = 1e-20); with coulomb_friction: p = 0.8. The model's dT/dt"),
-                                       EndsWith("(p = 0.0004); with coulomb_friction: p = 0.8.")));
+  EXPECT_THAT(c.verdict().where, AllOf(HasSubstr("(p = 1e-20); in the last model p = 0.8. Without coulomb_friction, the model's dT/dt"),
+                                       EndsWith("(p = 0.0004); in the last model p = 0.8.")));
 }
 
 TEST(Verdict, AnEstimateThatLaterRungsHaveMovedIsGivenOfBothModels) {
@@ -244,7 +245,7 @@ TEST(Verdict, AnAddedEffectThatExplainsNothingIsNotCalledMissing) {
   const Verdict v = c.verdict();
   EXPECT_THAT(v.sentence, testing::StartsWith("coulomb_friction was added and explains no more than chance does; "));
   EXPECT_THAT(v.sentence, testing::Not(HasSubstr("was missing")));
-  EXPECT_THAT(v.where, HasSubstr("with coulomb_friction: p = "));
+  EXPECT_THAT(v.where, HasSubstr("in the last model p = "));
   EXPECT_THAT(v.added, testing::ElementsAre("coulomb_friction: friction = 0.20 ± 0.30 V/s; held-out gain -3.4"))
       << "as the last model has it";
 }
@@ -344,7 +345,7 @@ TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) 
   const Verdict v = c.verdict();
   EXPECT_THAT(
       v.sentence,
-      HasSubstr("was missing: with it the missing dw/dt against w changes in significance: p = 1e-20 before, p = 0.7 now; whether"));
+      HasSubstr("was missing: with it the missing dw/dt against w is no longer significant (p = 1e-20 before, p = 0.7 now); whether"));
   ASSERT_EQ(v.errors.size(), 2U);
   EXPECT_EQ(shown(v.errors[1]), "20.0 ± 1.0 V/s to 19.40 ± 0.90 V/s (within its sigma)");
   c.ladder->rungs[1].force = {{"dw/dt", {18.4, 0.9, "V/s"}}};

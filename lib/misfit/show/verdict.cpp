@@ -167,8 +167,8 @@ class VerdictBuilder {
   [[nodiscard]] std::string place_where_it_fails(const ForceMap& map) const {
     const ForceMap* after = map_after(map);
     if (after == nullptr) return as_sentence(map.sentence + " (" + p_equals(map.p_corrected) + ")");
-    return as_sentence(
-        fmt::format("{} ({}); with {}: {}", map.sentence, p_equals(map.p_corrected), names_added(), p_equals(after->p_corrected)));
+    return as_sentence(fmt::format("without {}, {} ({}); in the last model {}", names_added(), map.sentence, p_equals(map.p_corrected),
+                                   p_equals(after->p_corrected)));
   }
   /// The most significant place of each port that has one; empty: the most significant map has none.
   [[nodiscard]] std::string where_it_fails(const std::vector<ForceMap>& maps) const {
@@ -329,8 +329,8 @@ class VerdictBuilder {
     const ForceMap* before = fails ? &in_.diagnosis->maps.front() : nullptr;
     const ForceMap* after = fails ? map_after(*before) : nullptr;
     if (after != nullptr && (out_.errors.empty() || !is_telling(out_.errors.front())))
-      return fmt::format("the missing {} against {} changes in significance: {} before, {} now", before->port, before->quantity,
-                         p_equals(before->p_corrected), p_equals(after->p_corrected));
+      return fmt::format("the missing {} against {} is {} significant ({} before, {} now)", before->port, before->quantity,
+                         after->p_corrected > 0.01 ? "no longer" : "still", p_equals(before->p_corrected), p_equals(after->p_corrected));
     if (out_.errors.empty()) return "";
     std::string out = change_in_words(out_.errors.front());
     for (const ErrorChange& e : std::span(out_.errors).subspan(1)) {

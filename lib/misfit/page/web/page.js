@@ -474,8 +474,8 @@ async function showPair(body, map, current) {
     emphasised: (k) => ({ boxes: [cells.boxes[k]] }),
     said: (k, count) => {
       const box = cells.boxes[k];
-      return `Marked: ${count} samples with ${map.x} from ${endsShown(box[0], box[1])} ${plain(map.figure.xUnit)} and ${map.y} from ` +
-        `${endsShown(box[2], box[3])} ${plain(map.figure.panels[0].unit)}; force ${shown(cells.z[k], 2)} sigma`;
+      return `Marked: ${count} samples, force ${shown(cells.z[k], 2)} sigma, with ${map.x} from ${endsShown(box[0], box[1])} ${plain(map.figure.xUnit)} and ${map.y} from ` +
+        `${endsShown(box[2], box[3])} ${plain(map.figure.panels[0].unit)}`;
     } }) });
   emphasisePicked(figure, map);
   if (!byCell) figure.node.append(element('p', { class: 'soft' }, withoutSamples(asked)));
