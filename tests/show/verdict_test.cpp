@@ -212,7 +212,7 @@ TEST(Verdict, EveryPortThatFailsIsNamedWithItsMostSignificantPlace) {
   c.add_effect();
   c.rung_diagnosis = c.diagnosis;
   for (ForceMap& map : c.rung_diagnosis->maps) map.p_corrected = 0.8;
-  EXPECT_THAT(c.verdict().where, AllOf(HasSubstr("(p = 1e-20); in the last model p = 0.8. Without coulomb_friction, the model's dT/dt"),
+  EXPECT_THAT(c.verdict().where, AllOf(HasSubstr("(p = 1e-20); in the last model p = 0.8. The model's dT/dt"),
                                        EndsWith("(p = 0.0004); in the last model p = 0.8.")));
 }
 

@@ -163,12 +163,12 @@ class VerdictBuilder {
   [[nodiscard]] const ForceMap* map_after(const ForceMap& map) const {
     return in_.rung_diagnosis == nullptr ? nullptr : find_map(*in_.rung_diagnosis, map.port, map.quantity);
   }
-  /// Of the study's own model, and what the ladder has left of it.
-  [[nodiscard]] std::string place_where_it_fails(const ForceMap& map) const {
+  /// Of the study's own model, and what the ladder has left of it; the first of several names what was added since.
+  [[nodiscard]] std::string place_where_it_fails(const ForceMap& map, bool first) const {
     const ForceMap* after = map_after(map);
-    if (after == nullptr) return as_sentence(map.sentence + " (" + p_equals(map.p_corrected) + ")");
-    return as_sentence(fmt::format("without {}, {} ({}); in the last model {}", names_added(), map.sentence, p_equals(map.p_corrected),
-                                   p_equals(after->p_corrected)));
+    const std::string place = map.sentence + " (" + p_equals(map.p_corrected) + ")";
+    if (after == nullptr) return as_sentence(place);
+    return as_sentence((first ? "without " + names_added() + ", " : "") + place + "; in the last model " + p_equals(after->p_corrected));
   }
   /// The most significant place of each port that has one; empty: the most significant map has none.
   [[nodiscard]] std::string where_it_fails(const std::vector<ForceMap>& maps) const {
@@ -179,7 +179,7 @@ class VerdictBuilder {
       const bool named = std::find(ports.begin(), ports.end(), map.port) != ports.end();
       if (map.sentence.empty() || named || places.size() == most) continue;
       ports.push_back(map.port);
-      places.push_back(place_where_it_fails(map));
+      places.push_back(place_where_it_fails(map, places.empty()));
     }
     return fmt::format("{}", fmt::join(places, " "));
   }
