@@ -45,9 +45,10 @@ std::string force_of(const MissingForce& missing) {
 /// `change`: the same before the effect was added; nullptr: there is no such map.
 std::string map_of(const ForceMap& map, const ForceMap* before, const std::string& added) {
   const std::string change = before != nullptr ? json_of(report::map_change_figure(*before, map, added)) : "null";
-  return fmt::format(R"({{"port":{},"quantity":{},"label":{},"portLabel":{},"p":{},"figure":{},"change":{}}})", json_string(map.port),
-                     json_string(map.quantity), json_words(map.quantity), json_words(map.port), json_number(map.p_corrected),
-                     json_of(report::map_figure(map)), change);
+  const std::string p_before = before != nullptr ? json_number(before->p_corrected) : "null";
+  return fmt::format(R"({{"port":{},"quantity":{},"label":{},"portLabel":{},"p":{},"pBefore":{},"figure":{},"change":{}}})",
+                     json_string(map.port), json_string(map.quantity), json_words(map.quantity), json_words(map.port),
+                     json_number(map.p_corrected), p_before, json_of(report::map_figure(map)), change);
 }
 
 std::string pair_of(const PairMap& map) {

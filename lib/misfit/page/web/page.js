@@ -364,11 +364,13 @@ async function showWhere(view, where, current) {
   if (!where) return nothing(view, 'This model is not diagnosed yet. Discover (or misfit diagnose) does it; Run does it only if filter_error is among the methods of the study.');
   const conclusions = where.blocks.find((b) => b.kind === 'list');
   if (conclusions) view.append(blocks([conclusions]));
-  const all = [...where.maps, ...where.pairs].sort((a, b) => (a.p ?? 2) - (b.p ?? 2)); // the most significant first; without a p last
+  const least = (map) => Math.min(map.p ?? 2, map.pBefore ?? 2); // the most significant first, now or before; without a p last
+  const all = [...where.maps, ...where.pairs].sort((a, b) => least(a) - least(b));
+  const significance = ({ p, pBefore }) => (pBefore < 0.01 && pBefore !== null ? `p = ${shown(pBefore, 2)} before, ${shown(p, 2)} now` : `p = ${shown(p, 2)}`);
   const list = element('div', { class: 'list', role: 'group', 'aria-label': 'Maps of the missing force' });
   const body = element('div');
   const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', 'data-map': map.figure.name, onclick: () => show(k) }, words(map.portLabel), ' against ',
-    words(map.label ?? map.xLabel), map.yLabel ? ' and ' : '', map.yLabel ? words(map.yLabel) : '', ' ', element('small', {}, `p = ${shown(map.p, 2)}`)));
+    words(map.label ?? map.xLabel), map.yLabel ? ' and ' : '', map.yLabel ? words(map.yLabel) : '', ' ', element('small', {}, significance(map))));
   list.append(...buttons);
   view.append(element('h3', {}, 'Missing force against…'), list, body);
   const tests = element('div'), more = folded('Tests of the residuals', tests);
