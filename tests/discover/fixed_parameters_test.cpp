@@ -22,7 +22,9 @@ std::vector<std::string> said(const std::map<std::string, double>& sigmas) {
 }
 
 TEST(FixedParameters, OneThatTheDataWantOtherwiseIsSaid) {
-  EXPECT_THAT(said({}), testing::Contains(testing::HasSubstr("unless it is known that well, estimate it (parameters.stiffness.free = true in the study)")));
+  EXPECT_THAT(
+      said({}),
+      testing::Contains(testing::HasSubstr("unless it is known that well, estimate it (parameters.stiffness.free = true in the study)")));
 }
 
 /// Its score knows nothing of that: freed it stays where it is.

@@ -17,8 +17,7 @@ constinit thread_local unsigned looks = 0;
 
 std::atomic<bool>& interrupted() { return flag; }
 
-Interrupted::Interrupted()
-    : Stopped("interrupted; finished work is kept in the run folder, and the same command continues from there") {}
+Interrupted::Interrupted() : Stopped("interrupted; finished work is kept in the run folder, and the same command continues from there") {}
 
 namespace {
 

@@ -95,8 +95,8 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
     model.holds.emplace_back(c->is_measured_input ? "first_order" : "zero_order");
     model.hold_reasons.emplace_back(
         c->is_measured_input ? "; it varies smoothly, so straight between samples"
-        : steps     ? ""
-                    : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
+        : steps              ? ""
+                             : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
     data.drivers.push_back({table.values(c->name, model.input_units.back()), c->is_measured_input, false});
   }
   note_left_out("inputs", left_out, fmt::format("a first model has at most {} inputs", most_guessed.inputs), model.remarks);
