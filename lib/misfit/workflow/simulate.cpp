@@ -12,9 +12,9 @@
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/states.h"
-#include "misfit/model/curve_table.h"
 #include "misfit/sim/planner.h"
 #include "misfit/sim/random_run.h"
+#include "misfit/workflow/estimate/estimate.h"
 #include "misfit/workflow/stages.h"
 
 namespace misfit {
@@ -51,17 +51,6 @@ void knots_from_tables(const Session& session, ModelRequest& request) {
   }
 }
 
-void curves_from_tables(const Session& session, const ModelRequest& request, Model& model) {
-  const auto names = parameter_names(request, session.registry);
-  for (const auto& [name, study] : session.study.curves) {
-    const auto known = names.find(name);
-    const Curve* curve = known == names.end() ? nullptr : model.find_curve(known->second);
-    if (curve == nullptr || !study.table) continue;
-    const Table table = read_csv(*study.table);
-    set_curve(model, curve->name, table.values(curve->of, curve->of_unit), table.values(name, curve->unit));
-  }
-}
-
 void check_noise(const SimulateStudy& ask, const SystemSpec& spec) {
   std::vector<std::string> names;
   for (const auto& output : spec.outputs) names.push_back(output.name);
@@ -78,7 +67,7 @@ Case from_section(Session& session) {
   knots_from_tables(session, request);
   Case out{assemble(request, session.registry), {}, {}};
   check_noise(ask, out.model.system->spec());
-  curves_from_tables(session, request, out.model);
+  set_curves_from_tables(session, request, out.model);
   const auto samples = static_cast<std::size_t>(ask.duration / ask.step) + 1;
   out.signals.name = "simulation";
   for (std::size_t i = 0; i < samples; ++i) out.signals.t.push_back(static_cast<double>(i) * ask.step);

@@ -28,6 +28,8 @@ void add_camera(Session& session, ModelRequest& request);
 void add_camera(const Calibration& calibration, const Registry& registry, ModelRequest& request);
 /// For the study's own system.
 [[nodiscard]] Prepared prepare(Session& session);
+/// Curves for which [curves] of the study gives a table, as values of the assembled model.
+void set_curves_from_tables(const Session& session, const ModelRequest& request, Model& model);
 /// For the regression form of sliding_bin; nullopt where the system has none. Names of effects it leaves out go to `left_out`.
 [[nodiscard]] std::optional<Prepared> prepare_regression(Session& session, std::vector<std::string>& left_out);
 /// Does the attitude stage already average over three samples the channel that the regression reads?

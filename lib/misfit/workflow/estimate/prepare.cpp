@@ -116,17 +116,6 @@ std::vector<Signals> read_experiments(Session& session, const Model& model, Gaps
   return out;
 }
 
-void start_from_tables(const Session& session, const ModelRequest& request, Model& model) {
-  const auto names = parameter_names(request, session.registry);
-  for (const auto& [name, curve] : session.study.curves) {
-    const auto known = names.find(name);
-    const Curve* target = known == names.end() ? nullptr : model.find_curve(known->second);
-    if (!curve.table || target == nullptr) continue;
-    const Table table = read_csv(*curve.table);
-    set_curve(model, target->name, table.values(curve.of, target->of_unit), table.values(name, target->unit));
-  }
-}
-
 Prepared prepare_request(Session& session, ModelRequest request, Gaps gaps) {
   if (session.study.experiments.empty())
     throw InputError({session.study.file.string(), 0, 0}, "the study has no [[experiment]]: there is nothing to fit");
@@ -136,11 +125,22 @@ Prepared prepare_request(Session& session, ModelRequest request, Gaps gaps) {
   choose_all_knots(request, session.registry, out.experiments, default_intervals);
   out.model = assemble(request, session.registry);
   out.request = std::move(request);
-  start_from_tables(session, out.request, out.model);
+  set_curves_from_tables(session, out.request, out.model);
   return out;
 }
 
 }  // namespace
+
+void set_curves_from_tables(const Session& session, const ModelRequest& request, Model& model) {
+  const auto names = parameter_names(request, session.registry);
+  for (const auto& [name, curve] : session.study.curves) {
+    const auto known = names.find(name);
+    const Curve* target = known == names.end() ? nullptr : model.find_curve(known->second);
+    if (!curve.table || target == nullptr) continue;
+    const Table table = read_csv(*curve.table);
+    set_curve(model, target->name, table.values(curve.of, target->of_unit), table.values(name, target->unit));
+  }
+}
 
 bool predicts_pixels(const SystemSpec& spec) {
   return std::any_of(spec.outputs.begin(), spec.outputs.end(), [](const OutputSpec& o) { return o.name == "P_y" || o.name == "P_z"; });
