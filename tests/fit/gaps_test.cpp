@@ -129,10 +129,39 @@ TEST(Gaps, OfEveryExperimentAreSaidThoughOneIsTooShort) {
   EXPECT_THAT(fit.facts, testing::Contains(testing::Key("gaps: long")));
 }
 
+/// The same without an input that moves: on before the gap and after it.
+Signals without_change(Signals signals) {
+  for (double& u : signals.inputs[0].values) u = 1.0;
+  return signals;
+}
+
 TEST(Gaps, AGapThatTheModelCanBeRunAcrossIsBridged) {
-  EXPECT_EQ(split_at_gaps(first_order_model(0.001), first_order(3600.0, 0.001)).size(), 1U) << "a time constant of 1000 s";
-  EXPECT_EQ(split_at_gaps(first_order_model(), first_order(5.0)).size(), 1U) << "50 steps, but five time constants";
+  EXPECT_EQ(split_at_gaps(first_order_model(0.001), without_change(first_order(3600.0, 0.001))).size(), 1U) << "a time constant of 1000 s";
+  EXPECT_EQ(split_at_gaps(first_order_model(), without_change(first_order(5.0))).size(), 1U) << "50 steps, but five time constants";
   EXPECT_EQ(split_at_gaps(first_order_model(), first_order(0.0)).size(), 1U);
+}
+
+TEST(Gaps, MissingRowsWithInputsThatMayHaveChangedCutTheRecording) {
+  const std::vector<Signals> parts = split_at_gaps(first_order_model(), first_order(5.0));
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].samples(), 101U);
+  EXPECT_TRUE(parts[1].after_gap);
+  ASSERT_EQ(parts[0].notes.size(), 1U);
+  EXPECT_THAT(parts[0].notes[0], HasSubstr("cut at 1 gap in time of up to 5.1 s, in which inputs of the model are unknown"));
+  EXPECT_EQ(split_at_gaps(first_order_model(), first_order(0.19)).size(), 1U) << "two rows";
+  Signals drifting = first_order(5.0);
+  for (std::size_t i = 0; i < drifting.samples(); ++i) drifting.inputs[0].values[i] = 1e-3 * drifting.t[i];
+  EXPECT_EQ(split_at_gaps(first_order_model(), drifting).size(), 2U);
+}
+
+/// Recorded whenever something changed: what lies between two rows is known.
+TEST(Gaps, ARecordingOfUnevenStepsIsNotCutAtItsLongerOnes) {
+  Signals uneven = first_order(0.0);
+  std::mt19937_64 random(5);
+  std::exponential_distribution<double> step(10.0);
+  double t = 0.0;
+  for (double& at : uneven.t) at = t += step(random);
+  EXPECT_EQ(split_at_gaps(first_order_model(), uneven).size(), 1U);
 }
 
 TEST(Gaps, TheDataTellHowFastTheMotionIsWhereTheStartDoesNot) {

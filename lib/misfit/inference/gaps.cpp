@@ -1,7 +1,11 @@
 #include "misfit/inference/gaps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "misfit/core/text.h"
 #include "misfit/inference/states.h"
@@ -14,6 +18,9 @@ namespace {
 
 const char* const part = "_part_";
 constexpr double min_gap_steps = 10.0, min_gap_radians = 50.0;
+constexpr double min_unknown_input = 3.0;  // times the step that all but 2 % of the steps do not exceed
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double least_input_change = 0.1;  // of its standard deviation
 constexpr std::size_t fewest_samples = 5;
 
 /// The model's fastest rate over the samples at which its states are known; 0 if it says nothing.
@@ -70,54 +77,106 @@ Signals piece_of(const Signals& whole, std::size_t first, std::size_t last) {
   return out;
 }
 
-/// First sample of every piece, and the end of the last.
-std::vector<std::size_t> cuts_of(const Model& model, const Signals& signals) {
-  std::vector<std::size_t> cuts{0};
-  const double usual = usual_step(signals.t);
-  std::vector<std::size_t> long_steps;
-  for (std::size_t i = 1; i < signals.samples(); ++i) {
-    if (signals.t[i] - signals.t[i - 1] > min_gap_steps * usual) long_steps.push_back(i);
+/// RMS change of an input from one sample to the first that comes `later` or more after it, over its standard deviation; 0 of a constant.
+double change_within(const std::vector<double>& t, const std::vector<double>& input, double later) {
+  const MeanAndSigma level = mean_and_sigma(input);
+  if (level.constant()) return 0.0;
+  double squares = 0.0, pairs = 0.0;
+  for (std::size_t i = 0, j = 0; i < t.size(); ++i) {
+    while (j < t.size() && t[j] - t[i] < later) ++j;
+    if (j == t.size()) break;
+    squares += std::pow(input[j] - input[i], 2);
+    pairs += 1.0;
   }
-  if (!long_steps.empty()) {
-    const ReconstructedStates states = reconstruct_states(model, signals);
-    const double fastest = std::max(rate_of_model(model, signals, states), rate_of_data(model, signals, states));
-    for (const std::size_t i : long_steps) {
-      if (fastest * (signals.t[i] - signals.t[i - 1]) > min_gap_radians) cuts.push_back(i);
-    }
-  }
-  cuts.push_back(signals.samples());
-  return cuts;
+  return pairs > 0.0 ? std::sqrt(squares / pairs) / level.sigma : 0.0;
 }
 
-std::string note_of(const Signals& whole, const std::vector<std::size_t>& cuts, std::size_t left_out) {
+/// An input of the model changes within a time as long as this gap, so that nobody knows what it was there.
+bool an_input_is_unknown(const Signals& signals, double gap) {
+  return std::any_of(signals.inputs.begin(), signals.inputs.end(), [&](const Signal& input) {
+    return input.values.size() == signals.samples() && change_within(signals.t, input.values, gap) > least_input_change;
+  });
+}
+
+/// [s] All but 2 % of the steps are no longer.
+double long_step(const std::vector<double>& t) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  constexpr double usual_share = 0.98;
+  const auto place = steps.begin() + static_cast<std::ptrdiff_t>(usual_share * static_cast<double>(steps.size() - 1));
+  std::nth_element(steps.begin(), place, steps.end());
+  return *place;
+}
+
+/// Why a recording is cut at a sample.
+enum class Cut { none, state_is_lost, input_is_unknown };
+
+struct Piece {
+  std::size_t first = 0;
+  Cut cut = Cut::none;  ///< before it
+};
+
+/// First sample of every piece.
+std::vector<Piece> pieces_of(const Model& model, const Signals& signals) {
+  std::vector<Piece> out{{}};
+  if (signals.samples() < 2) return out;
+  const double usual = usual_step(signals.t), unknown_from = min_unknown_input * std::max(usual, long_step(signals.t));
+  std::optional<double> fastest, changes_within;
+  for (std::size_t i = 1; i < signals.samples(); ++i) {
+    const double gap = signals.t[i] - signals.t[i - 1];
+    if (gap > unknown_from && (gap >= changes_within.value_or(infinity) || an_input_is_unknown(signals, gap))) {
+      changes_within = std::min(gap, changes_within.value_or(infinity));
+      out.push_back({i, Cut::input_is_unknown});
+    } else if (gap > min_gap_steps * usual) {
+      if (!fastest) {
+        const ReconstructedStates states = reconstruct_states(model, signals);
+        fastest = std::max(rate_of_model(model, signals, states), rate_of_data(model, signals, states));
+      }
+      if (*fastest * gap > min_gap_radians) out.push_back({i, Cut::state_is_lost});
+    }
+  }
+  return out;
+}
+
+std::string note_of(const Signals& whole, const std::vector<Piece>& pieces, Cut why) {
   double longest = 0.0;
-  for (std::size_t k = 1; k + 1 < cuts.size(); ++k) longest = std::max(longest, whole.t[cuts[k]] - whole.t[cuts[k] - 1]);
-  const std::size_t gaps = cuts.size() - 2;
-  std::string text = "cut at " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") + " in time of up to " + format_value(longest) +
-                     " s, too long for the model to be run across: each part has initial states of its own";
-  if (left_out > 0)
-    text += "; " + counted(left_out, "sample in a part of fewer than 5 is not used", "samples in parts of fewer than 5 are not used");
-  return text;
+  std::size_t gaps = 0;
+  for (const Piece& piece : pieces) {
+    if (piece.cut != why) continue;
+    ++gaps;
+    longest = std::max(longest, whole.t[piece.first] - whole.t[piece.first - 1]);
+  }
+  if (gaps == 0) return "";
+  const char* const reason = why == Cut::state_is_lost ? "too long for the model to be run across"
+                                                       : "in which inputs of the model are unknown and may have changed";
+  return fmt::format("cut at {} in time of up to {} s, {}: each part has initial states of its own", counted(gaps, "gap", "gaps"),
+                     format_value(longest), reason);
 }
 
 }  // namespace
 
 std::vector<Signals> split_at_gaps(const Model& model, Signals signals) {
-  const std::vector<std::size_t> cuts = cuts_of(model, signals);
+  const std::vector<Piece> pieces = pieces_of(model, signals);
   std::vector<Signals> out;
   std::size_t left_out = 0;
-  for (std::size_t k = 0; k + 1 < cuts.size() && cuts.size() > 2; ++k) {
-    if (cuts[k + 1] - cuts[k] < fewest_samples) {
-      left_out += cuts[k + 1] - cuts[k];
+  for (std::size_t k = 0; k < pieces.size() && pieces.size() > 1; ++k) {
+    const std::size_t first = pieces[k].first, end = k + 1 < pieces.size() ? pieces[k + 1].first : signals.samples();
+    if (end - first < fewest_samples) {
+      left_out += end - first;
       continue;
     }
-    out.push_back(piece_of(signals, cuts[k], cuts[k + 1]));
-    out.back().after_gap = cuts[k] > 0;
+    out.push_back(piece_of(signals, first, end));
+    out.back().after_gap = first > 0;
     out.back().name += part + std::to_string(out.size());
   }
   if (out.empty()) return {std::move(signals)};
-  out.front().notes = signals.notes;
-  out.front().notes.push_back(note_of(signals, cuts, left_out));
+  auto& notes = out.front().notes = signals.notes;
+  for (const Cut why : {Cut::state_is_lost, Cut::input_is_unknown}) {
+    if (std::string note = note_of(signals, pieces, why); !note.empty()) notes.push_back(std::move(note));
+  }
+  if (left_out > 0)
+    notes.back() +=
+        "; " + counted(left_out, "sample in a part of fewer than 5 is not used", "samples in parts of fewer than 5 are not used");
   return out;
 }
 

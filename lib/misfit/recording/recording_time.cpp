@@ -71,7 +71,8 @@ void find_gaps(const std::vector<double>& t, RecordingTime& out) {
   const auto longest =
       std::max_element(out.gaps.begin(), out.gaps.end(), [](const Gap& a, const Gap& b) { return a.to - a.from < b.to - b.from; });
   out.remarks.push_back(
-      fmt::format("{} {} s, after t = {} s: the model runs across short gaps, and the recording is split at long ones (misfit help data)",
+      fmt::format("{} {} s, after t = {} s: the model runs across gaps in which no input may have changed; the recording is split at "
+                  "others (misfit help data)",
                   out.gaps.size() == 1 ? "1 gap in time, of" : fmt::format("{} gaps in time, the longest", out.gaps.size()),
                   format_value(longest->to - longest->from), format_to_step(longest->from, out.step)));
 }
