@@ -60,5 +60,16 @@ TEST(KStep, WhereManyDivergeNoErrorIsGiven) {
   for (const auto& [channel, rms] : errors.rms) EXPECT_TRUE(std::isnan(rms.back())) << channel;
 }
 
+TEST(GrowthOfErrors, IsThatOfTheLongestPredictionsOverAllChannels) {
+  const double nan = std::nan("");
+  EXPECT_DOUBLE_EQ(growth_of_errors({{"x", {1.0, 2.0}}}, {{"x", {0.5, 3.0}}}), 1.5);
+  EXPECT_DOUBLE_EQ(growth_of_errors({{"x", {1.0, 2.0}}, {"y", {1.0, 1.0}}}, {{"x", {1.0, 2.0}}, {"y", {1.0, 7.0}}}), 5.0);
+  EXPECT_DOUBLE_EQ(growth_of_errors({{"x", {1.0, nan}}}, {{"x", {2.0, nan}}}), 2.0) << "of the longest that the model before has";
+  EXPECT_TRUE(std::isinf(growth_of_errors({{"x", {1.0, 2.0}}}, {{"x", {1.0, nan}}}))) << "they diverge now";
+  EXPECT_DOUBLE_EQ(growth_of_errors({{"x", {1.0, 2.0}}}, {{"y", {9.0, 9.0}}}), 1.0) << "nothing in common";
+  EXPECT_THAT(growth_in_words(1.85), testing::HasSubstr("grow by 85 %"));
+  EXPECT_THAT(growth_in_words(1e13), testing::HasSubstr("more than ten times"));
+}
+
 }  // namespace
 }  // namespace misfit

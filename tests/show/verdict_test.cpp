@@ -261,6 +261,16 @@ TEST(Verdict, TheDropOfACurveIsTestedWithAllItsCoefficients) {
   EXPECT_THAT(c.verdict().sentence, HasSubstr("explains no more than chance does")) << "p = 0.13";
 }
 
+TEST(Verdict, WhatPredictsWorseIsNotCalledMissing) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs.back().actual_drop = 15.0;
+  c.ladder->rungs.back().held_out_gain = -4.7;
+  EXPECT_THAT(c.verdict().sentence,
+              AllOf(testing::StartsWith("coulomb_friction was added, and what is held out is predicted worse with it"),
+                    testing::Not(HasSubstr("was missing"))));
+}
+
 TEST(Verdict, WhatNoLikelihoodComparesIsNotCalledMissing) {
   Case c;
   c.add_effect();

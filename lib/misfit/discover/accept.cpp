@@ -68,6 +68,7 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   if (off_steps) return *off_steps;
   if (no_edge) return *no_edge;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
+  if (const double growth = held_out.growth_ahead(e.refit->estimate); growth > kMostGrowthOfErrors) return growth_in_words(growth);
   e.alone_gains_nothing = !(*c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit)));
   if (!e.alone_gains_nothing) return "";
   if (!(*c.held_out_gain > 0.0)) return "the held-out log-likelihood does not rise (" + format_value(*c.held_out_gain) + ")";

@@ -299,4 +299,9 @@ double HeldOut::gain(const FilterEstimate& with) {
   return loglik(with) - *before_;
 }
 
+double HeldOut::growth_ahead(const FilterEstimate& with) {
+  if (!ahead_before_) ahead_before_ = k_step_errors(without_);
+  return growth_of_errors(ahead_before_->rms, k_step_errors(with).rms);
+}
+
 }  // namespace misfit

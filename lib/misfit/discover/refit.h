@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "misfit/discover/screen.h"
+#include "misfit/fit/filter/k_step.h"
 #include "misfit/fit/filter/predictive_loglik.h"
 
 namespace misfit {
@@ -92,6 +93,8 @@ class HeldOut {
 
   /// TimeLimitReached: a limit of time was spent in one of these fits.
   [[nodiscard]] double gain(const FilterEstimate& with);
+  /// Of the errors of predictions farther ahead than one sample (growth_of_errors()).
+  [[nodiscard]] double growth_ahead(const FilterEstimate& with);
 
  private:
   [[nodiscard]] double loglik(const FilterEstimate& estimate) const;
@@ -100,6 +103,7 @@ class HeldOut {
   const std::vector<Signals>& experiments_;
   int threads_;
   std::optional<double> before_;
+  std::optional<KStepErrors> ahead_before_;
 };
 
 }  // namespace misfit

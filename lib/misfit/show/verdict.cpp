@@ -73,11 +73,12 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
 
 /// What the likelihood says of what a rung added. Untested: no likelihood compares it with the model before (another system, or a
 /// comparison that was cut off).
-enum class Evidence { needed, chance, untested };
+enum class Evidence { needed, predicts_worse, chance, untested };
 
 Evidence evidence_for(const Rung& rung) {
   if (!rung.actual_drop) return Evidence::untested;
-  return explains_no_more_than_chance(rung) ? Evidence::chance : Evidence::needed;
+  if (explains_no_more_than_chance(rung)) return Evidence::chance;
+  return rung.held_out_gain && *rung.held_out_gain < 0.0 ? Evidence::predicts_worse : Evidence::needed;
 }
 
 /// Not decided: refits were cut off by a limit of their own, which a longer round does not lift.
@@ -256,14 +257,19 @@ class VerdictBuilder {
     std::stable_partition(out_.errors.begin(), out_.errors.end(), [](const ErrorChange& e) { return e.after.has_value(); });
   }
 
-  /// The first curve that `discover --auto` has not tried beside the last model; nullptr: there is none.
+  [[nodiscard]] bool on_ladder(const EffectPlace& curve) const {
+    return in_.ladder != nullptr && std::any_of(in_.ladder->rungs.begin(), in_.ladder->rungs.end(),
+                                                [&](const Rung& rung) { return rung.added == curve.effect && rung.roles == curve.roles; });
+  }
+
+  /// The first curve that `discover --auto` has not tried beside the last model, and that is not in it; nullptr: there is none.
   [[nodiscard]] const EffectPlace* untried(const std::vector<EffectPlace>& curves) const {
     const Rung* last = in_.ladder != nullptr && !in_.ladder->rungs.empty() ? &in_.ladder->rungs.back() : nullptr;
     for (const EffectPlace& curve : curves) {
       const bool tried =
           last != nullptr && last->gained_too_little &&
           std::count(last->gained_too_little->begin(), last->gained_too_little->end(), effect_at(curve.effect, curve.roles)) > 0;
-      if (!tried) return &curve;
+      if (!tried && !on_ladder(curve)) return &curve;
     }
     return nullptr;
   }
@@ -285,7 +291,7 @@ class VerdictBuilder {
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const EffectPlace* curve = untried(d.unexplained_effects);
       const bool in_vain = curve == nullptr && !d.unexplained_effects.empty();
-      if (in_vain) unknown += "; as a curve it explains too little for its coefficients";
+      if (in_vain) unknown += "; as a curve of one of them it gains too little, or cannot be fitted";
       if (curve == nullptr && !in_vain)
         unknown +=
             "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help system)";
@@ -351,6 +357,7 @@ class VerdictBuilder {
   /// "a was missing: with all that was added the error falls; b was added and explains no more than chance does; ", and what comes behind.
   void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
     const auto needed = added_names(Evidence::needed), untested = added_names(Evidence::untested), chance = added_names(Evidence::chance);
+    const auto worse = added_names(Evidence::predicts_worse);
     std::vector<std::string> parts;
     const auto part = [&](const std::vector<std::string>& names, const char* of_one, const char* of_several) {
       if (!names.empty()) parts.push_back(join_words(names) + (names.size() == 1 ? of_one : of_several));
@@ -358,8 +365,10 @@ class VerdictBuilder {
     part(needed, " was missing", " were missing");
     part(untested, " was added, and no likelihood compares it with the model before",
          " were added, and no likelihood compares them with the models before");
+    part(worse, " was added, and what is held out is predicted worse with it",
+         " were added, and what is held out is predicted worse with them");
     part(chance, " was added and explains no more than chance does", " were added and explain no more than chance does");
-    if (const std::string change = change_by_ladder(); !change.empty() && parts.size() > (chance.empty() ? 0 : 1)) {
+    if (const std::string change = change_by_ladder(); !change.empty() && parts.size() > (chance.empty() ? 0U : 1U)) {
       const char* with = parts.size() > 1 ? "all that was added" : added_names().size() == 1 ? "it" : "them";
       parts.front() += fmt::format(": with {} {}", with, change);
     }

@@ -9,6 +9,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/data/candidates.h"
+#include "misfit/fit/filter/k_step.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/model/provisional.h"
 #include "misfit/workflow/assess/without.h"
@@ -122,23 +123,37 @@ class Extension {
         return false;
       }
     } catch (const InputError& error) {  // what it is a curve of hardly moves in the fit that comes first
-      ladder_.root().note(fmt::format("{} cannot be fitted: {}", effect_at(effect, roles), error.what()));
-      return false;
+      return cannot_be_added(effect_at(effect, roles), error);
     } catch (const RunError& error) {
       stop_if_interrupted();
-      ladder_.root().note(fmt::format("{} cannot be fitted: {}", effect_at(effect, roles), error.what()));
-      return false;
+      return cannot_be_added(effect_at(effect, roles), error);
     }
-    const Rung& rung = ladder_.ladder().rungs.back();
-    const int more = parameters_added(rung);
-    if (!gains_too_little(rung.actual_drop, rung.held_out_gain, more, families_)) return true;
-    ladder_.root().note(fmt::format("{} gains too little for its {} coefficients (drop {}, held-out gain {}): its rung is taken off",
-                                    effect_at(effect, roles), more, rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
-                                    rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown"));
-    ladder_.remove(std::to_string(rung.id));
+    const std::string why = why_not_kept(ladder_.ladder().rungs.back());
+    if (why.empty()) return true;
+    ladder_.root().note(fmt::format("{}: {}: its rung is taken off", effect_at(effect, roles), why));
+    ladder_.remove(std::to_string(ladder_.ladder().rungs.back().id));
     ladder_.gained_too_little(effect_at(effect, roles));
     added_.pop_back();
     return false;
+  }
+
+  bool cannot_be_added(const std::string& curve, const std::exception& error) {
+    ladder_.root().note(curve + " cannot be fitted: " + error.what());
+    ladder_.gained_too_little(curve);
+    return false;
+  }
+
+  /// Of the rung of a curve of unknown form; empty: it stays.
+  [[nodiscard]] std::string why_not_kept(const Rung& rung) const {
+    const int more = parameters_added(rung);
+    if (gains_too_little(rung.actual_drop, rung.held_out_gain, more, families_))
+      return fmt::format("gains too little for its {} coefficients (drop {}, held-out gain {})", more,
+                         rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
+                         rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown");
+    const auto parent =
+        std::find_if(ladder_.ladder().rungs.begin(), ladder_.ladder().rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
+    const double growth = parent == ladder_.ladder().rungs.end() ? 1.0 : growth_of_errors(parent->k_step, rung.k_step);
+    return growth > kMostGrowthOfErrors ? growth_in_words(growth) : "";
   }
 
   /// The first that the later ones have made needless goes, and those above it are added again without it. False: there is none.

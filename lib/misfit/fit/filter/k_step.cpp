@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "misfit/core/text.h"
 #include "misfit/data/ladder.h"
@@ -109,6 +111,28 @@ KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation) {
   out.runs = std::move(errors.runs);
   out.diverged = std::move(errors.diverged);
   return out;
+}
+
+double growth_of_errors(const std::map<std::string, std::vector<double>>& before, const std::map<std::string, std::vector<double>>& after) {
+  double squares = 0.0, channels = 0.0;
+  for (const auto& [name, errors] : before) {
+    const auto others = after.find(name);
+    if (others == after.end() || others->second.size() != errors.size()) continue;
+    const auto last = std::find_if(errors.rbegin(), errors.rend(), [](double e) { return e > 0.0 && std::isfinite(e); });
+    if (last == errors.rend()) continue;
+    const double there = others->second[static_cast<std::size_t>(errors.rend() - last) - 1];
+    if (!std::isfinite(there)) return std::numeric_limits<double>::infinity();
+    squares += std::pow(there / *last, 2);
+    channels += 1.0;
+  }
+  return channels > 0.0 ? std::sqrt(squares / channels) : 1.0;
+}
+
+std::string growth_in_words(double growth) {
+  constexpr double too_much_to_say = 10.0;
+  const std::string much =
+      growth > too_much_to_say ? "to more than ten times what they were" : fmt::format("by {:.0f} %", 100.0 * (growth - 1.0));
+  return "predictions farther ahead get worse: their RMS errors grow " + much;
 }
 
 }  // namespace misfit

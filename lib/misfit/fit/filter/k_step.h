@@ -20,4 +20,15 @@ struct KStepErrors {
 /// how good the good ones are: no RMS is given.
 [[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation = false);
 
+/// How the errors of the longest predictions that both models have changed: RMS over the channels of (after/before). Infinite where those
+/// after diverge and those before do not; 1 where nothing can be compared.
+[[nodiscard]] double growth_of_errors(const std::map<std::string, std::vector<double>>& before,
+                                      const std::map<std::string, std::vector<double>>& after);
+
+/// A model that is nearer to the truth predicts better one sample ahead and farther ahead. One that imitates what is missing over one
+/// sample, or of which the data determine too little, loses the motion sooner than the model without it: its errors grow by more than this.
+inline constexpr double kMostGrowthOfErrors = 1.2;
+/// "predictions farther ahead get worse: their RMS errors grow by 85 %".
+[[nodiscard]] std::string growth_in_words(double growth);
+
 }  // namespace misfit
