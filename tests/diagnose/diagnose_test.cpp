@@ -55,6 +55,33 @@ TEST(WhereItFails, TheSigmaOfARunOfHatsHoldsTheirCorrelation) {
   EXPECT_EQ(where_it_fails(map, covariance), "the model's M is 43.5 ± 5.7 N m too high where V is between 0.5 m/s and 2.5 m/s");
 }
 
+TEST(WhereItFails, WhatIsBelowThreeSigmasIsSaidOfTheMapAsAWhole) {
+  ForceMap map;
+  map.port = "M";
+  map.port_unit = "N m";
+  map.quantity = "V";
+  map.quantity_unit = "m/s";
+  map.x = {1.0, 2.0, 3.0};
+  map.amplitude = {0.0, -12.0, 0.0};
+  map.sigma = {6.0, 6.0, 6.0};
+  EXPECT_EQ(where_it_fails(map, 36.0 * Eigen::MatrixXd::Identity(3, 3)),
+            "as a whole, the model's M depends otherwise on V than the data say, though no range of it stands out by itself (most: 12.0 ± "
+            "6.0 N m too high where V is between 1.5 m/s and 2.5 m/s)");
+}
+
+TEST(WhereItFails, TimeEndsWithTheRecording) {
+  ForceMap map;
+  map.port = "M";
+  map.port_unit = "N m";
+  map.quantity = "time";
+  map.quantity_unit = "s";
+  map.x = {0.0, 10.0, 20.0};
+  map.amplitude = {44.0, 44.0, 44.0};
+  map.sigma = {6.0, 6.0, 6.0};
+  EXPECT_EQ(where_it_fails(map, 36.0 * Eigen::MatrixXd::Identity(3, 3)),
+            "the model's M is 44.0 ± 3.5 N m too low where time is between 0 s and 20 s");
+}
+
 TEST(WhereItFails, EndsThatDifferLittleAreToldApart) {
   ForceMap map;
   map.port = "M";

@@ -66,7 +66,7 @@ TEST(LineOfADiscovery, NamesTheAcceptedEffectElseThatOfTheSmallestP) {
   c.effect = "lag";
   c.p_value = 0.7;
   d.candidates = {c, c};
-  EXPECT_EQ(line_of(d), "2 effects tested, none accepted; smallest p: lag (p = 0.7)");
+  EXPECT_EQ(line_of(d), "1 effect at 2 places tested, none accepted; smallest p: lag (p = 0.7)");
   d.candidates.back().absorbed = true;
   EXPECT_THAT(line_of(d), testing::StartsWith("1 effect tested, none accepted"));
   d.candidates.front().p_value = 1e-9;

@@ -93,7 +93,7 @@ TEST(Verdict, NothingMissingNamesTheRandomForceThatDrivesTheMotion) {
                          "No missing effect detected: none of 2 candidates");
   Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::random_force);
-  EXPECT_THAT(v.sentence, AllOf(HasSubstr("none of 2"), EndsWith("a random force of 20.0 ± 1.0 V/s.")));
+  EXPECT_THAT(v.sentence, AllOf(HasSubstr("none of the 2 effects that were tested"), EndsWith("a random force of 20.0 ± 1.0 V/s.")));
   c.fits.front().force.at("dw/dt") = {1.0, 14.0, "V/s"};
   EXPECT_EQ(c.verdict().kind, VerdictKind::nothing_missing) << "none that is not known to be there";
   c.fits.front().driven = false;
@@ -158,12 +158,12 @@ TEST(Verdict, EffectsThatTheDataCannotDistinguishAreAllNamed) {
 
 TEST(Verdict, TheHorizonOfAnErrorHasItsTimeAndTheLastModelItsOtherNumbers) {
   Case c;
-  EXPECT_EQ(c.verdict().errors.front().what(), "RMS error of w one sample ahead") << "of a filter";
+  EXPECT_EQ(c.verdict().errors.front().what(), "RMS error of w one sample ahead in the estimation data") << "of a filter";
   c.add_effect();
   c.ladder->rungs.back().parameters = {{"friction", {5.0, 0.5, "V/s"}}};
   c.ladder->rungs.back().estimates = {{"friction", {5.0, 0.5, "V/s"}}, {"gain", {2.0, 0.1, "1/s"}}};
   const Verdict v = c.verdict();
-  EXPECT_EQ(v.errors.front().what(), "RMS error of w 32 samples (0.64 s) ahead");
+  EXPECT_EQ(v.errors.front().what(), "RMS error of w 32 samples (0.64 s) ahead in the estimation data");
   EXPECT_THAT(v.added, testing::ElementsAre(testing::StartsWith("coulomb_friction: friction = 5.0"),
                                             "other parameters of the last model: gain = 2.00 ± 0.10 1/s"));
 }
@@ -185,17 +185,46 @@ TEST(Verdict, AnAddedEffectIsGivenWithTheErrorBeforeAndAfterInItsUnitAndInPerCen
   Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::effect_added);
   EXPECT_EQ(v.sentence,
-            "coulomb_friction was missing: with it the RMS error of w 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %); nothing "
+            "coulomb_friction was missing: with it the RMS error of w 32 samples (0.64 s) ahead in the estimation data falls from 8 V to "
+            "1.2 V (-85 %); nothing "
             "more is found "
             "missing.");
   EXPECT_THAT(v.where, AllOf(testing::StartsWith("Without coulomb_friction, the model's dw/dt is "),
                              EndsWith("(p = 1e-20); in the last model p = 0.7.")));
-  EXPECT_THAT(v.next, IsEmpty());
+  EXPECT_EQ(v.next, "misfit export configs/motor --to json");
 
   c.discovery.reset();
   v = c.verdict();
   EXPECT_THAT(v.sentence, EndsWith("whether more is missing has not been looked for."));
   EXPECT_EQ(v.next, "misfit discover configs/motor");
+}
+
+TEST(Verdict, WhatIsHeldOutStandsBesideWhatWasFitted) {
+  Case c;
+  c.fits.front().validation_rms = {{"w", {0.35, 0.0, "V"}}};
+  ASSERT_EQ(c.verdict().errors.size(), 3U);
+  EXPECT_EQ(c.verdict().errors[1].what(), "RMS error of w one sample ahead in the held-out data");
+  c.add_effect();
+  c.ladder->rungs[0].validation_rms = c.ladder->rungs[1].validation_rms = {{"w", {0.35, 0.0, "V"}}};
+  EXPECT_EQ(c.verdict().errors[1].what(), "RMS error of w one sample ahead in the held-out data");
+  c.ladder->rungs[0].validation_k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 9.0}}};
+  c.ladder->rungs[1].validation_k_step = {{"w", {0.3, 0.3, 0.4, 0.5, 0.8, 1.5}}};
+  EXPECT_EQ(c.verdict().errors[1].what(), "RMS error of w 32 samples (0.64 s) ahead in the held-out data");
+  EXPECT_EQ(shown(c.verdict().errors[1]), "9 V to 1.5 V (-83 %)");
+}
+
+TEST(Verdict, ARandomForceThatIsGoneIsSaidNotToBeDistinguishableFrom0) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs[1].force = {{"dw/dt", {0.09, 0.0, "V/s"}}};
+  EXPECT_EQ(shown(c.verdict().errors.back()), "20.0 ± 1.0 V/s to 0.09 V/s (not distinguishable from 0)");
+}
+
+TEST(Verdict, AnErrorOfATrajectoryIsThatOfAFreeRun) {
+  Case c;
+  c.fits.front().method = "output_error";
+  c.fits.front().force.clear();
+  EXPECT_EQ(c.verdict().errors.front().what(), "RMS error of w in a free run in the estimation data");
 }
 
 TEST(Verdict, EveryPortThatFailsIsNamedWithItsMostSignificantPlace) {
@@ -300,9 +329,10 @@ TEST(Verdict, AnErrorThatClearlyRisesIsSaidBesideOneThatFalls) {
     rung.rms["x"] = {0.1, 0.0, "m"};
     rung.k_step["x"] = {0.1, 0.1, 0.1, 0.1, 0.1, last};
   }
-  EXPECT_THAT(c.verdict().sentence,
-              AllOf(HasSubstr("the RMS error of w 32 samples (0.64 s) ahead falls from 8 V to 1.2 V (-85 %), but the RMS "
-                              "error of x 32 samples (0.64 s) ahead rises from 2 m to 7 m (+250 %)")));
+  EXPECT_THAT(
+      c.verdict().sentence,
+      AllOf(HasSubstr("the RMS error of w 32 samples (0.64 s) ahead in the estimation data falls from 8 V to 1.2 V (-85 %), but the RMS "
+                      "error of x 32 samples (0.64 s) ahead in the estimation data rises from 2 m to 7 m (+250 %)")));
   c.ladder->rungs[1].k_step = c.ladder->rungs[0].k_step;
   c.ladder->rungs[1].force.clear();
   EXPECT_THAT(c.verdict().sentence, HasSubstr(" stays at "));
@@ -345,9 +375,10 @@ TEST(Verdict, AChangeWithinItsSigmaIsCalledSoAndTheMapWhereTheModelFailedLeads) 
   c.add_effect();
   c.ladder->rungs[1].force = {{"dw/dt", {19.4, 0.9, "V/s"}}};
   c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9}}};
-  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w 32 samples (0.64 s) ahead falls from 8 V to 7.9 V (-1.2 %)"));
+  EXPECT_THAT(c.verdict().sentence,
+              HasSubstr("with it the RMS error of w 32 samples (0.64 s) ahead in the estimation data falls from 8 V to 7.9 V (-1.2 %)"));
   c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9999}}};
-  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w 32 samples (0.64 s) ahead stays at 8 V"));
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("with it the RMS error of w 32 samples (0.64 s) ahead in the estimation data stays at 8 V"));
   c.ladder->rungs[1].k_step = {{"w", {0.3, 0.5, 1.0, 2.0, 4.0, 7.9}}};
   c.fail_at_rest();
   c.rung_diagnosis = c.diagnosis;
@@ -382,9 +413,11 @@ TEST(Verdict, ACalibrationThatItsSweepContradictsComesBeforeEveryEffect) {
   const Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::calibration);
   EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("It is the camera, not the physics"), HasSubstr("4.58 px RMS")));
-  EXPECT_THAT(v.sentence,
-              EndsWith("; add them to [camera] free of the study, free = [\"camera_roll\", \"image_centre\"], and run it again."));
-  EXPECT_EQ(v.next, "misfit run configs/motor");
+  EXPECT_THAT(v.sentence, EndsWith("; estimate them, too, and run the study again."));
+  EXPECT_EQ(v.next, "misfit set configs/motor 'camera.free=[\"camera_roll\", \"image_centre\"]' && misfit run configs/motor");
+  c.calibration->names = {"h_c", "K", "centre_y", "centre_z"};
+  c.discovery->sweep_asks = {"lens_k1"};
+  EXPECT_THAT(c.verdict().next, HasSubstr("'camera.free=[\"image_centre\", \"lens_k1\"]'")) << "what is free already stays free";
   c.discovery->outcome = SearchOutcome::camera_against_flight;
   EXPECT_THAT(c.verdict().sentence, testing::StartsWith("The camera comes first"));
 }

@@ -1,6 +1,9 @@
 #include "misfit/data/candidates.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 
 #include "misfit/core/display.h"
 #include "misfit/core/enum_name.h"
@@ -107,9 +110,32 @@ std::string best_rejected(const Candidate& candidate) {
          p_equals(candidate.p_value) + "), rejected: " + candidate.why;
 }
 
+namespace {
+
+bool is_tested_curve(const Candidate& c) { return c.family == CandidateFamily::unknown && !c.absorbed; }
+bool is_tested_effect(const Candidate& c) { return c.family != CandidateFamily::unknown && !c.absorbed; }
+
+}  // namespace
+
 std::size_t effects_tested(const Discovery& discovery) {
-  const auto tested = [](const Candidate& c) { return c.family != CandidateFamily::unknown && !c.absorbed; };
-  return static_cast<std::size_t>(std::count_if(discovery.candidates.begin(), discovery.candidates.end(), tested));
+  return static_cast<std::size_t>(std::count_if(discovery.candidates.begin(), discovery.candidates.end(), is_tested_effect));
+}
+
+std::size_t curves_tested(const Discovery& discovery) {
+  return static_cast<std::size_t>(std::count_if(discovery.candidates.begin(), discovery.candidates.end(), is_tested_curve));
+}
+
+std::string tested_in_words(const Discovery& discovery) {
+  std::set<std::string> effects;
+  for (const Candidate& c : discovery.candidates) {
+    if (is_tested_effect(c)) effects.insert(c.effect);
+  }
+  std::vector<std::string> out;
+  const std::size_t places = effects_tested(discovery), curves = curves_tested(discovery);
+  if (places > 0)
+    out.push_back(counted(effects.size(), "effect", "effects") + (places > effects.size() ? fmt::format(" at {} places", places) : ""));
+  if (curves > 0) out.push_back(counted(curves, "curve of unknown form", "curves of unknown form"));
+  return join_words(out);
 }
 
 std::string unexplained_place(const Discovery& discovery) {

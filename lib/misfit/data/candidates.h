@@ -110,6 +110,10 @@ struct Discovery {
 
 /// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.
 [[nodiscard]] std::size_t effects_tested(const Discovery& discovery);
+/// The curves of unknown form.
+[[nodiscard]] std::size_t curves_tested(const Discovery& discovery);
+/// "20 effects and 20 curves of unknown form"; where an effect was tested at several places: "3 effects at 5 places and …".
+[[nodiscard]] std::string tested_in_words(const Discovery& discovery);
 
 /// "a force on dw/dt", "an error of V".
 [[nodiscard]] std::string unexplained_place(const Discovery& discovery);

@@ -21,9 +21,11 @@ struct Rung {
   std::optional<double> predicted_drop, actual_drop, held_out_gain;  ///< against the parent; missing across a change of system or channels
   double loglik = 0.0;
   std::optional<double> validation_loglik;
-  std::map<std::string, Estimate> force;                      ///< strength of the random force
-  std::map<std::string, Estimate> rms, validation_rms;        ///< per channel, one step ahead
-  std::map<std::string, std::vector<double>> k_step;          ///< channel → RMS at 1, 2, 4, 8, 16, 32 samples ahead [unit of rms]
+  std::map<std::string, Estimate> force;                ///< strength of the random force
+  std::map<std::string, Estimate> rms, validation_rms;  ///< per channel, one step ahead
+  std::map<std::string, std::vector<double>> k_step;    ///< channel → RMS at 1, 2, 4, 8, 16, 32 samples ahead [unit of rms]
+  /// The same of what is held out; missing: nothing is, or it was not asked for.
+  std::optional<std::map<std::string, std::vector<double>>> validation_k_step;
   std::optional<Estimate> trim;                               ///< [rad]
   std::map<std::string, Estimate> parameters;                 ///< of the added effect, numbers alone
   std::optional<int> new_parameters;                          ///< free ones that its parent does not have, coefficients of curves too

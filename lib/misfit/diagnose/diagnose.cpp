@@ -52,6 +52,16 @@ RunMean mean_of(const ForceMap& map, const Eigen::MatrixXd& covariance, std::siz
           w.dot(covariance.block(first, first, count, count) * w)};
 }
 
+double half_step(const ForceMap& map) { return map.x.size() > 1 ? 0.5 * (map.x[1] - map.x[0]) : 0.0; }
+
+/// Of the range of a hat; nothing was recorded beyond the first and the last time.
+double lower_edge(const ForceMap& map, std::size_t hat) {
+  return map.quantity == time_of_recording && hat == 0 ? map.x[hat] : map.x[hat] - half_step(map);
+}
+double upper_edge(const ForceMap& map, std::size_t hat) {
+  return map.quantity == time_of_recording && hat + 1 == map.x.size() ? map.x[hat] : map.x[hat] + half_step(map);
+}
+
 }  // namespace
 
 std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covariance) {
@@ -67,13 +77,15 @@ std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covarianc
       best_to = to;
     }
   }
-  if (!(best.chi2() > 0.0))
-    return "the model's " + map.port + " depends otherwise on " + map.quantity +
-           " than the data say, though no range of it stands out: the values of the map are correlated";
-  const double half = map.x.size() > 1 ? 0.5 * (map.x[1] - map.x[0]) : 0.0;
-  return "the model's " + map.port + " is " + in_display_unit(std::abs(best.value), map.port_unit, std::sqrt(best.variance)) +
-         (best.value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
-         place(map.x[best_from] - half, half, map.quantity_unit) + " and " + place(map.x[best_to] + half, half, map.quantity_unit);
+  const std::string otherwise = "as a whole, the model's " + map.port + " depends otherwise on " + map.quantity +
+                                " than the data say, though no range of it stands out by itself";
+  if (!(best.chi2() > 0.0)) return otherwise + ": the values of the map are correlated";
+  const std::string amount = in_display_unit(std::abs(best.value), map.port_unit, std::sqrt(best.variance)) +
+                             (best.value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
+                             place(lower_edge(map, best_from), half_step(map), map.quantity_unit) + " and " +
+                             place(upper_edge(map, best_to), half_step(map), map.quantity_unit);
+  constexpr double least_chi2 = 9.0;  // three sigmas
+  return best.chi2() < least_chi2 ? otherwise + " (most: " + amount + ")" : "the model's " + map.port + " is " + amount;
 }
 
 namespace {

@@ -104,6 +104,25 @@ void add_past(const ForceSensitivity& force, const Samples& samples, double inte
   }
 }
 
+/// Samples of the parts that are fitted: what is held out says nothing of the hours in which it lies.
+std::vector<bool> not_held_out(const FilterEstimate& estimate, const ForceSensitivity& force) {
+  std::vector<bool> out = force.used();
+  std::size_t offset = 0;
+  for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
+    const std::size_t samples = estimate.traces[e].samples;
+    const std::vector<SampleRole>& use = estimate.data[e].use;
+    const std::size_t channels = use.size() / std::max<std::size_t>(samples, 1);
+    for (std::size_t k = 0; k < samples; ++k) {
+      const auto first = use.begin() + static_cast<std::ptrdiff_t>(k * channels);
+      if (std::find(first, first + static_cast<std::ptrdiff_t>(channels), SampleRole::validation) !=
+          first + static_cast<std::ptrdiff_t>(channels))
+        out[offset + k] = false;
+    }
+    offset += samples;
+  }
+  return out;
+}
+
 /// Where enough hats are left to draw a curve.
 void add_if_visited(Features features, std::vector<Features>& out) {
   if (features.centre.size() >= 3) out.push_back(std::move(features));
@@ -135,7 +154,7 @@ std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSen
     }
     add_if_visited(hats(course, force.used(), most), out);
   }
-  add_if_visited(hats({"time", "s", -1, force.times(), force.times()}, force.used(), most), out);
+  add_if_visited(hats({time_of_recording, "s", -1, force.times(), force.times()}, not_held_out(estimate, force), most), out);
   if (!lasts_days(force.times())) return out;
   constexpr int every_two_hours = 13;
   Course day{time_of_day, "h"};

@@ -16,6 +16,9 @@ struct Features {
   Eigen::MatrixXd f, ahead;    ///< all samples × hats: at the filtered state, and as predicted for the end of the step
 };
 
+/// Seconds of a recording: the only quantity of a map that has a first and a last value.
+inline constexpr const char* time_of_recording = "time";
+
 /// Of recordings of three days and more, whatever they are of: what people do and the sun does recurs every 24 h, and a model without it
 /// blames an input that follows.
 inline constexpr const char* time_of_day = "time of day";
@@ -24,7 +27,8 @@ inline constexpr const char* time_of_day = "time of day";
 [[nodiscard]] double hour_of_day(double t);
 
 /// Quantities that maps are drawn over: those of the system that `explains` and vary, then time and time_of_day. `most` hats each, equally
-/// spaced over 0.5 % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out.
+/// spaced over 0.5 % to 99.5 % of the visited values (ends extended); hats with fewer than 25 samples under them are left out. Hats of time
+/// lie in what is not held out.
 [[nodiscard]] std::vector<Features> features_of(const FilterEstimate& estimate, const ForceSensitivity& force, int most = 10);
 
 /// How a memory of a quantity is called: "the past of u".

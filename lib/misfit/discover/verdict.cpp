@@ -134,11 +134,11 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
       nearest = effect_at(c.effect, c.roles);
     }
   }
-  const std::size_t tested = out.candidates.size();
+  const std::size_t tested = effects_tested(out) + curves_tested(out);
   const std::string closest = nearest.empty() ? "" : "; the smallest p is " + format_probability(least) + " (" + nearest + ")";
   out.outcome = SearchOutcome::none_missing;
   out.verdict = "No missing effect detected: " +
-                (tested == 1 ? "the one candidate does not have both" : "none of " + std::to_string(tested) + " candidates has both") +
+                (tested == 1 ? "the one candidate does not have both" : "none of " + tested_in_words(out) + " has both") +
                 " a family-wise p below " + format_value(p_accept) + " and a held-out gain above ½ per parameter" + closest + ".";
 }
 

@@ -16,21 +16,6 @@ using Put = std::function<void(Figure)>;
 
 constexpr double part_of_force = 10.0;  // [s], of a recording over twice as long
 
-/// The model that a section is about.
-struct Subject {
-  std::string note;    ///< for headings: ": rung 2, strut_wake added"
-  std::string prefix;  ///< of the names of its figures
-};
-
-Subject of_rung(const RungInput& rung) {
-  return {fmt::format(": rung {}, {} added", rung.id, rung.added), fmt::format("rung_{:02}_", rung.id)};
-}
-
-/// Named only where there is a choice.
-Subject of_study(const ReportInput& input) {
-  return {input.ladder && input.ladder->rungs.size() > 1 ? ": the study's own model (rung 0)" : "", ""};
-}
-
 /// Maps worth a picture: those that stand out, at least three, at most eight. They come sorted.
 std::size_t maps_to_draw(const std::vector<ForceMap>& maps) {
   constexpr double significant = 0.01;
@@ -116,6 +101,24 @@ void show_rungs(const Ladder& ladder, Page& page) {
 
 }  // namespace
 
+Subject of_rung(int id, const std::string& added) {
+  return {fmt::format(": rung {}, {} added", id, added), fmt::format("rung_{:02}_", id)};
+}
+
+Subject of_study(const ReportInput& input) {
+  return {input.ladder && input.ladder->rungs.size() > 1 ? ": the study's own model (rung 0)" : "", ""};
+}
+
+std::vector<ModelResults> models_of(const ReportInput& input) {
+  std::vector<ModelResults> out;
+  if (input.last_model) {
+    const LastModel& last = *input.last_model;
+    out.push_back({of_rung(last.id, last.added), &last.fits, &last.comparison});
+  }
+  out.push_back({of_study(input), &input.fits, input.comparison ? &*input.comparison : nullptr});
+  return out;
+}
+
 void ladder_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.ladder || input.ladder->rungs.size() < 2) return;
   page.show(blocks_of(*input.ladder), [&](const std::string&) {
@@ -128,12 +131,13 @@ void ladder_section(const ReportInput& input, Page& page, const Draw& draw) {
 
 void diagnosis_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (input.diagnosis) show(*input.diagnosis, of_study(input), page, draw);
-  if (input.rung && input.rung->diagnosis) show(*input.rung->diagnosis, of_rung(*input.rung), page, draw);
+  if (input.rung && input.rung->diagnosis) show(*input.rung->diagnosis, of_rung(input.rung->id, input.rung->added), page, draw);
 }
 
 void discovery_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (input.discovery) show(*input.discovery, input.diagnosis, of_study(input), page, draw);
-  if (input.rung && input.rung->discovery) show(*input.rung->discovery, input.rung->diagnosis, of_rung(*input.rung), page, draw);
+  if (input.rung && input.rung->discovery)
+    show(*input.rung->discovery, input.rung->diagnosis, of_rung(input.rung->id, input.rung->added), page, draw);
 }
 
 }  // namespace misfit::report

@@ -88,6 +88,10 @@ Figure figure_of_map(const ForceMap& map) {
   const std::vector<double> x = display_levels(map.x, map.quantity_unit);
   Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
   set_edges(half_steps(x), 0.9, samples);
+  if (map.quantity == "time") {  // nothing was recorded before and after
+    for (double& low : samples.lo) low = std::max(low, x.front());
+    for (double& high : samples.hi) high = std::min(high, x.back());
+  }
   for (const double count : map.count) counts.y_step = std::max(counts.y_step, round_step(count));
   counts.series = {samples};
   figure.panels = {panel, counts};

@@ -49,6 +49,14 @@ struct RungInput {
   std::optional<Discovery> discovery;
 };
 
+/// The model of the ladder's last rung, by its own fits.
+struct LastModel {
+  int id = 0;
+  std::string added;
+  std::vector<Fit> fits;
+  Comparison comparison;
+};
+
 /// All that a report shows. The report computes nothing: what is not here is not in it.
 struct ReportInput {
   std::string study, question;
@@ -60,7 +68,8 @@ struct ReportInput {
   std::optional<Ladder> ladder;
   std::optional<Diagnosis> diagnosis;  ///< of the study's own model, as the next
   std::optional<Discovery> discovery;
-  std::optional<RungInput> rung;  ///< the same of a rung of the ladder: the last that was looked at
+  std::optional<LastModel> last_model;  ///< missing: nothing was added
+  std::optional<RungInput> rung;        ///< the same of a rung of the ladder: the last that was looked at
   std::optional<Uncertainty> uncertainty;
   std::optional<Resampling> resampling;
   std::vector<Reference> references;

@@ -12,18 +12,21 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   Draw draw(dir / "figures", page);
   verdict_section(input, page, draw);
   ladder_section(input, page, draw);
-  summary_section(input, page);
-  curves_section(input, page, draw);
-  page.fold_sections();
+  const std::vector<ModelResults> models = models_of(input);
+  for (const ModelResults& model : models) {
+    summary_section(input, model, page);
+    curves_section(model, input.references, page, draw);
+    page.fold_sections();
+  }
   diagnosis_section(input, page, draw);
   discovery_section(input, page, draw);
   uncertainty_section(input, page, draw);
   resampling_section(input, page, draw);
-  prediction_section(input, page, draw);
+  for (const ModelResults& model : models) prediction_section(model, page, draw);
   simulated_section(input, page, draw);
   track_section(input, page, draw);
   measured_section(input, page, draw);
-  parameters_section(input, page);
+  for (const ModelResults& model : models) parameters_section(model, page);
   calibration_section(input, page, draw);
   notes_section(input, page);
   words_section(page);

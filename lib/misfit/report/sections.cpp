@@ -17,6 +17,13 @@ namespace misfit::report {
 namespace {
 
 constexpr double zoom_seconds = 5.0;
+/// A part much shorter than the whole, with enough samples to see how they follow each other.
+bool worth_a_zoom(const std::vector<double>& t, const Interval& zoom) {
+  constexpr std::ptrdiff_t least = 20;
+  const auto within = std::upper_bound(t.begin(), t.end(), zoom.to) - std::lower_bound(t.begin(), t.end(), zoom.from);
+  return t.size() > 1 && t.back() - t.front() > 2.0 * zoom_seconds && within >= least;
+}
+
 constexpr std::string_view of_data = "data: ";  // begins the name of a fact of a fit (Fit::facts) that says what was done to an experiment
 
 }  // namespace
@@ -32,32 +39,44 @@ void Draw::first(const Figure& figure) {
   first_ = figure.name;
 }
 
-void curves_section(const ReportInput& input, Page& page, const Draw& draw) {
-  const auto names = curve_names(input.fits, input.references);
+void curves_section(const ModelResults& model, const std::vector<Reference>& references, Page& page, const Draw& draw) {
+  const std::vector<Fit>& fits = *model.fits;
+  const auto names = curve_names(fits, references);
   Blocks differences;
-  if (input.comparison) differences.append(curve_difference_blocks(*input.comparison));
+  if (model.comparison != nullptr) differences.append(curve_difference_blocks(*model.comparison));
   if (names.empty()) return;
-  page.section("Curves");
-  draw(curve_figure(names.front().first, names.front().second, input.fits, input.references));
+  const auto put = [&](const std::pair<std::string, std::string>& name) {
+    Figure figure = curve_figure(name.first, name.second, fits, references);
+    figure.name = model.subject.prefix + figure.name;
+    draw(figure);
+  };
+  page.section("Curves" + model.subject.note);
+  put(names.front());
   if (names.size() == 1 && differences.all().empty()) return;
   page.fold(names.size() > 1 ? "More curves, and where they differ" : "Where they differ");
-  for (std::size_t k = 1; k < names.size(); ++k) draw(curve_figure(names[k].first, names[k].second, input.fits, input.references));
+  for (std::size_t k = 1; k < names.size(); ++k) put(names[k]);
   page.show(differences);
   page.unfold();
 }
 
 void uncertainty_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.uncertainty) return;
-  page.show(blocks_of(*input.uncertainty), [&](const std::string&) {
-    for (const Figure& figure : uncertainty_figures(*input.uncertainty, input.references)) draw(figure);
-  });
+  page.show(
+      blocks_of(*input.uncertainty),
+      [&](const std::string&) {
+        for (const Figure& figure : uncertainty_figures(*input.uncertainty, input.references)) draw(figure);
+      },
+      of_study(input).note);
 }
 
 void resampling_section(const ReportInput& input, Page& page, const Draw& draw) {
   if (!input.resampling) return;
-  page.show(blocks_of(*input.resampling), [&](const std::string&) {
-    for (const Figure& figure : interval_figures(*input.resampling)) draw(figure);
-  });
+  page.show(
+      blocks_of(*input.resampling),
+      [&](const std::string&) {
+        for (const Figure& figure : interval_figures(*input.resampling)) draw(figure);
+      },
+      of_study(input).note);
 }
 
 void calibration_section(const ReportInput& input, Page& page, const Draw& draw) {
@@ -82,17 +101,21 @@ void measured_section(const ReportInput& input, Page& page, const Draw& draw) {
   }
 }
 
-void prediction_section(const ReportInput& input, Page& page, const Draw& draw) {
+void prediction_section(const ModelResults& model, Page& page, const Draw& draw) {
   const auto predicts = [](const Fit& fit) { return !fit.predictions.empty(); };
-  if (std::none_of(input.fits.begin(), input.fits.end(), predicts)) return;
-  page.section("Predicted motion and residuals");
-  for (const Fit& fit : input.fits) {
+  if (std::none_of(model.fits->begin(), model.fits->end(), predicts)) return;
+  const auto put = [&](Figure figure) {
+    figure.name = model.subject.prefix + figure.name;
+    draw(figure);
+  };
+  page.section("Predicted motion and residuals" + model.subject.note);
+  for (const Fit& fit : *model.fits) {
     for (const ChannelPrediction& channel : fit.predictions) {
       const Interval zoom = typical_interval(channel.t, channel.measured, zoom_seconds);
-      draw(motion_figure(fit.method, channel, std::nullopt));
-      if (!channel.t.empty() && channel.t.back() - channel.t.front() > 2.0 * zoom_seconds) draw(motion_figure(fit.method, channel, zoom));
-      draw(autocorrelation_figure(fit.method, channel));
-      draw(residual_histogram_figure(fit.method, channel));
+      put(motion_figure(fit.method, channel, std::nullopt));
+      if (worth_a_zoom(channel.t, zoom)) put(motion_figure(fit.method, channel, zoom));
+      put(autocorrelation_figure(fit.method, channel));
+      put(residual_histogram_figure(fit.method, channel));
     }
   }
 }
@@ -104,14 +127,17 @@ void simulated_section(const ReportInput& input, Page& page, const Draw& draw) {
   for (const MotionSeries& s : motion.series) {
     if (std::find(experiments.begin(), experiments.end(), s.experiment) == experiments.end()) experiments.push_back(s.experiment);
   }
-  page.show(blocks_of(motion), [&](const std::string&) {
-    for (const std::string& experiment : experiments) {
-      for (const char* group : {"distribution", "autocorrelation", "spectrum"}) {
-        const Figure figure = simulated_figure(motion, experiment, group);
-        if (!figure.panels.empty()) draw(figure);  // a recording may be too short for a statistic
-      }
-    }
-  });
+  page.show(
+      blocks_of(motion),
+      [&](const std::string&) {
+        for (const std::string& experiment : experiments) {
+          for (const char* group : {"distribution", "autocorrelation", "spectrum"}) {
+            const Figure figure = simulated_figure(motion, experiment, group);
+            if (!figure.panels.empty()) draw(figure);  // a recording may be too short for a statistic
+          }
+        }
+      },
+      of_study(input).note);
 }
 
 void notes_section(const ReportInput& input, Page& page) {

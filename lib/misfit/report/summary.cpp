@@ -23,23 +23,22 @@ std::string first_clause(const Fit& fit) {
 }
 
 /// What the verdict does not say: methods without a result, references, and without a verdict the trims and what drives the motion.
-std::vector<std::string> findings(const ReportInput& input) {
+std::vector<std::string> findings(const ModelResults& model, bool verdict) {
   std::vector<std::string> sentences;
-  for (const Fit& fit : input.fits) {
+  for (const Fit& fit : *model.fits) {
     if (!fit.usable()) sentences.push_back(fit.method + " gives no result: " + first_clause(fit));
-    if (input.verdict) continue;
+    if (verdict) continue;
     if (fit.usable() && fit.trim)
       sentences.push_back(
           fmt::format("{} finds the trim at {}", fit.method, in_display_unit(fit.trim->value, fit.trim->unit, fit.trim->sigma)));
     if (fit.driven) sentences.push_back(driven_sentence(fit));
   }
-  if (input.comparison) {
-    for (const TrimDifference& d : input.comparison->trims) {
+  if (model.comparison != nullptr) {
+    for (const TrimDifference& d : model.comparison->trims) {
       if (d.reference) sentences.push_back(d.sentence);
     }
   }
-  sentences.insert(sentences.end(), input.notes.begin(), input.notes.end());
-  return as_sentences(sentences);
+  return sentences;
 }
 
 /// Of the method with a random force where it was used, else of the last one that predicts.
@@ -84,29 +83,28 @@ void verdict_section(const ReportInput& input, Page& page, Draw& draw) {
   if (const auto picture = picture_of(input)) draw.first(*picture);
 }
 
-void summary_section(const ReportInput& input, Page& page) {
-  Blocks out;
-  const bool effects_added = input.ladder && input.ladder->rungs.size() > 1;
-  out.heading(std::string("Results") + (effects_added ? ": the study's own model (rung 0)" : ""));
-  page.show(out);
+void summary_section(const ReportInput& input, const ModelResults& model, Page& page) {
+  page.section("Results" + model.subject.note);
   Blocks results;
-  if (input.comparison) results.table(method_table(*input.comparison));
+  if (model.comparison != nullptr) results.table(method_table(*model.comparison));
   page.show(results);
+  std::vector<std::string> sentences = findings(model, input.verdict.has_value());
+  if (model.fits == &input.fits) sentences.insert(sentences.end(), input.notes.begin(), input.notes.end());
   Blocks found;
-  found.list({findings(input)});
+  found.list({as_sentences(sentences)});
   page.show(found);
-  if (input.fits.empty()) return;
+  if (model.fits->empty()) return;
   page.fold("How the methods ended, and their warnings");
-  page.show(status_blocks(input.fits));
+  page.show(status_blocks(*model.fits));
   page.unfold();
 }
 
-void parameters_section(const ReportInput& input, Page& page) {
-  if (input.fits.empty()) return;
+void parameters_section(const ModelResults& model, Page& page) {
+  if (model.fits->empty()) return;
   Blocks out;
   out.heading("Parameters");
   out.paragraph("± is one standard deviation. Coefficients of curves are in fit.json.");
-  for (const Fit& fit : input.fits) {
+  for (const Fit& fit : *model.fits) {
     TableBlock parameters = parameter_table(fit);
     if (parameters.rows.empty() && fit.facts.empty()) continue;
     out.subheading(fit.method);
@@ -115,7 +113,7 @@ void parameters_section(const ReportInput& input, Page& page) {
     for (const auto& [name, words] : fit.facts) facts.push_back(fact_in_words(name) + ": " + words);
     out.list({facts});
   }
-  page.show(out);
+  page.show(out, {}, model.subject.note);
 }
 
 }  // namespace misfit::report

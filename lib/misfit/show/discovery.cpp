@@ -147,7 +147,7 @@ std::string drop_sentence(const Rung& rung) {
   std::string out = fmt::format("Drop: {} predicted, {:.1f} actual for {}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
                                 *rung.actual_drop, counted(static_cast<std::size_t>(parameters_added(rung)), "parameter", "parameters"));
   return out + (rung.held_out_gain ? "; gain of the held-out log-likelihood: " + shown_gain(rung.held_out_gain) + "."
-                                   : "; no validation data: set validation = \"last 25 %\".");
+                                   : "; no held-out gain: the study holds nothing out (validation = \"last 25 %\").");
 }
 
 /// Per channel, of all rungs.

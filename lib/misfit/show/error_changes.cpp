@@ -7,6 +7,7 @@
 
 #include "misfit/core/duration.h"
 #include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
 #include "misfit/math/statistics.h"
 #include "misfit/show/rows.h"
 
@@ -35,6 +36,58 @@ std::string ahead(int samples, const Fit* fit) {
   return fmt::format(" {} samples{} ahead", samples, time);
 }
 
+/// Of which data an error is: what was fitted, or what the fit has not seen.
+constexpr const char* in_estimation_data = " in the estimation data";
+constexpr const char* in_held_out_data = " in the held-out data";
+
+/// With a random force the model is corrected at each measurement; a trajectory runs on from its initial state.
+std::string horizon_of(const Fit& fit) {
+  if (!fit.force.empty()) return " one sample ahead";
+  return fit.method == trajectory_estimator().name ? " in a free run" : "";
+}
+
+/// Of the errors at `ahead` in both, at the farthest horizon.
+ErrorChange change_of(const std::string& of, const std::string& unit, double before, double after) {
+  ErrorChange out;
+  out.of = of;
+  out.before = {before, 0.0, unit};
+  out.after = Estimate{after, 0.0, unit};
+  return out;
+}
+
+/// A rung's errors some samples ahead: channel → horizons.
+using KSteps = std::map<std::string, std::vector<double>>;
+
+/// At the farthest horizon, channels that both rungs have.
+std::vector<ErrorChange> k_step_changes(const KSteps& first, const KSteps& last, const std::map<std::string, Estimate>& units,
+                                        const std::string& of) {
+  constexpr std::size_t farthest = std::size(kLadderSteps) - 1;
+  std::vector<ErrorChange> out;
+  for (const auto& [channel, steps] : first) {
+    const auto after = last.find(channel);
+    const auto rms = units.find(channel);
+    if (after == last.end() || rms == units.end() || steps.size() <= farthest || after->second.size() <= farthest) continue;
+    out.push_back(change_of(channel + of, rms->second.unit, steps[farthest], after->second[farthest]));
+  }
+  return out;
+}
+
+/// Of what is held out: some samples ahead where both rungs know that, else one.
+std::vector<ErrorChange> held_out_changes(const Rung& first, const Rung& last, const std::string& far) {
+  std::vector<ErrorChange> out;
+  if (first.validation_k_step && last.validation_k_step) {
+    out = k_step_changes(*first.validation_k_step, *last.validation_k_step, first.rms, far + in_held_out_data);
+    std::erase_if(out, [](const ErrorChange& e) { return !std::isfinite(e.before.value) || !std::isfinite(e.after->value); });
+  }
+  if (!out.empty()) return out;
+  for (const auto& [channel, rms] : first.validation_rms) {
+    const auto after = last.validation_rms.find(channel);
+    if (after != last.validation_rms.end())
+      out.push_back(change_of(channel + " one sample ahead" + in_held_out_data, rms.unit, rms.value, after->second.value));
+  }
+  return out;
+}
+
 /// The largest fall first, but a clear one of the error in what was measured before any of the random force, which says less.
 void most_telling_first(std::vector<ErrorChange>& errors) {
   const auto rank = [](const ErrorChange& e) {
@@ -45,44 +98,49 @@ void most_telling_first(std::vector<ErrorChange>& errors) {
   std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
 }
 
+std::string channel_of(const ErrorChange& e) { return e.kind == ErrorKind::rms_error ? e.of.substr(0, e.of.find(' ')) : ""; }
+
+/// Each behind the error of the same channel in the data that were fitted.
+void put_beside(std::vector<ErrorChange> held_out, std::vector<ErrorChange>& errors) {
+  for (ErrorChange& e : held_out) {
+    const auto same =
+        std::find_if(errors.begin(), errors.end(), [&](const ErrorChange& other) { return channel_of(other) == channel_of(e); });
+    errors.insert(same == errors.end() ? same : same + 1, std::move(e));
+  }
+}
+
 /// The change is below the digits that are shown.
 bool prints_alike(const ErrorChange& e) { return e.after && briefly(e.before) == briefly(*e.after); }
 
 }  // namespace
 
+std::string not_distinguishable(const Estimate& force) { return force.sigma > 0.0 ? "" : "not distinguishable from 0"; }
+
 std::vector<ErrorChange> errors_of(const Fit& fit) {
   std::vector<ErrorChange> out;
   const auto forces = force_strengths(fit.force);
-  for (const auto& [channel, rms] : fit.rms)
-    out.push_back(
-        {ErrorKind::rms_error, channel + (forces.empty() ? "" : " one sample ahead"), rms, std::nullopt, share_of_motion(fit, channel)});
+  for (const auto& [channel, rms] : fit.rms) {
+    const std::string what = channel + horizon_of(fit);
+    out.push_back({ErrorKind::rms_error, what + in_estimation_data, rms, std::nullopt, share_of_motion(fit, channel)});
+    if (const auto held_out = fit.validation_rms.find(channel); held_out != fit.validation_rms.end())
+      out.push_back({ErrorKind::rms_error, what + in_held_out_data, held_out->second, std::nullopt, ""});
+  }
   for (const ForceStrength& f : forces)
     out.push_back({ErrorKind::random_force, forces.size() > 1 ? f.port : "", f.strength, std::nullopt,
-                   is_seen(fit, f.strength) ? "" : "not distinguishable from 0"});
+                   is_seen(fit, f.strength) ? "" : not_distinguishable({})});
   return out;
 }
 
 std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, const Fit* fit) {
-  std::vector<ErrorChange> out;
-  constexpr std::size_t farthest = std::size(kLadderSteps) - 1;
-  for (const auto& [channel, steps] : first.k_step) {
-    const auto after = last.k_step.find(channel);
-    const auto rms = first.rms.find(channel);
-    if (after == last.k_step.end() || rms == first.rms.end() || steps.size() <= farthest || after->second.size() <= farthest) continue;
-    ErrorChange change;
-    change.of = channel + ahead(kLadderSteps[farthest], fit);
-    change.before.value = steps[farthest];
-    change.before.unit = rms->second.unit;
-    change.after = change.before;
-    change.after->value = after->second[farthest];
-    out.push_back(std::move(change));
-  }
+  const std::string far = ahead(kLadderSteps[std::size(kLadderSteps) - 1], fit);
+  std::vector<ErrorChange> out = k_step_changes(first.k_step, last.k_step, first.rms, far + in_estimation_data);
   const auto before = force_strengths(first.force), after = force_strengths(last.force);
   for (const ForceStrength& f : before) {
     if (const auto strength = strength_in(after, f.strength.unit))
-      out.push_back({ErrorKind::random_force, before.size() > 1 ? f.port : "", f.strength, strength, ""});
+      out.push_back({ErrorKind::random_force, before.size() > 1 ? f.port : "", f.strength, strength, not_distinguishable(*strength)});
   }
   most_telling_first(out);
+  put_beside(held_out_changes(first, last, far), out);
   return out;
 }
 
@@ -111,6 +169,7 @@ std::string shown(const ErrorChange& e) {
   if (e.kind == ErrorKind::trim) return briefly(e.before) + " to " + briefly(*e.after) + remark;
   if (e.within_sigma()) return briefly(e.before) + " to " + briefly(*e.after) + " (within its sigma)";
   if (prints_alike(e)) return briefly(*e.after) + " before and after";
+  if (e.kind == ErrorKind::random_force && !e.remark.empty()) return briefly(e.before) + " to " + briefly(*e.after) + remark;
   const auto change = e.per_cent();
   return briefly(e.before) + " to " + briefly(*e.after) +
          (change ? fmt::format(" ({:+.{}f} %)", *change, std::abs(*change) < 10.0 || *change < -99.0 ? 1 : 0) : "");

@@ -13,6 +13,9 @@ namespace misfit {
 /// one.
 [[nodiscard]] std::vector<ErrorChange> errors_of(const Fit& fit);
 
+/// "not distinguishable from 0": of a random force whose sigma could not be estimated; else empty.
+[[nodiscard]] std::string not_distinguishable(const Estimate& force);
+
 /// Errors at the farthest horizon and random force of two rungs, what tells most first. `fit`: of which the sampling gives the horizon its
 /// time; nullptr: none.
 [[nodiscard]] std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, const Fit* fit);

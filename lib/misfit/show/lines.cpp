@@ -141,7 +141,7 @@ std::string line_of(const Discovery& d) {
   const Candidate& best = accepted ? d.candidates.front() : *std::min_element(d.candidates.begin(), d.candidates.end(), nearer);
   const std::string name = effect_at(best.effect, best.roles);
   if (accepted) return fmt::format("missing: {} (drop {}, {})", name, shown_drop(best.actual_drop), p_equals(best.p_value));
-  const std::string tested = counted(effects_tested(d), "effect", "effects") + " tested, none accepted";
+  const std::string tested = tested_in_words(d) + " tested, none accepted";
   if (!d.unexplained_port.empty())
     return fmt::format("{}: {} that depends on {} is of unknown form", tested, unexplained_place(d), d.unexplained_quantity);
   constexpr double significant = 0.01;

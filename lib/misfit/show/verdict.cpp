@@ -185,6 +185,11 @@ class VerdictBuilder {
     return fmt::format("{}", fmt::join(places, " "));
   }
 
+  /// What to do with a model that lacks nothing more: other programs take it, on other recordings.
+  [[nodiscard]] std::string export_command() const {
+    return misfit_command("export", in_.study, "--to json", "") + (in_.out.empty() ? "" : " --run " + shell_word(in_.out));
+  }
+
   void no_result() {
     std::vector<std::string> why;
     if (in_.fits != nullptr) {
@@ -230,9 +235,22 @@ class VerdictBuilder {
     say(VerdictKind::calibration,
         (flight_too ? "the camera comes first: its" : "it is the camera, not the physics: its") +
             std::string(" calibration sweep asks for ") + join_words(asks) + ", which the camera of this study does not have" + residual +
-            fmt::format("; add {} to [camera] free of the study, free = [\"{}\"], and run it again", asks.size() == 1 ? "it" : "them",
-                        fmt::join(asks, "\", \"")),
-        command("run"));
+            fmt::format("; estimate {}, too, and run the study again", asks.size() == 1 ? "it" : "them"),
+        misfit_command("set", in_.study, shell_word(fmt::format("camera.free=[\"{}\"]", fmt::join(camera_free_with(asks), "\", \""))), "") +
+            " && " + command("run"));
+  }
+  /// What the camera frees, as [camera] free of a study says it, and what its sweep asks for.
+  [[nodiscard]] std::vector<std::string> camera_free_with(const std::vector<std::string>& asks) const {
+    std::vector<std::string> out;
+    const auto add = [&](const std::string& name) {
+      if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
+    };
+    for (const std::string& name : in_.calibration == nullptr ? std::vector<std::string>{} : in_.calibration->names) {
+      if (name == "centre_y" || name == "centre_z") add("image_centre");
+      if (name == "camera_roll" || name == "pixel_aspect" || name == "lens_k1" || name == "camera_distance") add(name);
+    }
+    for (const std::string& name : asks) add(name);
+    return out;
   }
 
   void missing(const Candidate& best) {
@@ -252,7 +270,9 @@ class VerdictBuilder {
   void with_candidate(const Candidate& best) {
     const auto after = force_strengths(best.force);
     for (ErrorChange& e : out_.errors) {
-      if (e.kind == ErrorKind::random_force) e.after = strength_in(after, e.before.unit);
+      if (e.kind != ErrorKind::random_force) continue;
+      e.after = strength_in(after, e.before.unit);
+      if (e.after) e.remark = not_distinguishable(*e.after);
     }
     std::stable_partition(out_.errors.begin(), out_.errors.end(), [](const ErrorChange& e) { return e.after.has_value(); });
   }
@@ -307,24 +327,24 @@ class VerdictBuilder {
     } else if (d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, as_sentence(d.verdict) + " Write one as a formula under [effects]", "misfit help study");
     } else if (effects_added_) {
-      added("nothing more is found missing", "");
+      added("nothing more is found missing", export_command());
     } else {
       nothing_missing(d);
     }
   }
   void nothing_missing(const Discovery& d) {
-    const std::size_t effects = effects_tested(d);
+    const std::size_t tested_alone = effects_tested(d) + curves_tested(d);
     const std::string tested =
-        "no effect is found missing" + (effects == 0   ? std::string(", but none of the library was tested")
-                                        : effects == 1 ? ": the one that was tested is not needed"
-                                                       : fmt::format(": none of {} that were tested is needed", effects));
+        "no effect is found missing" + (tested_alone == 0   ? std::string(", but none of the library was tested")
+                                        : tested_alone == 1 ? ": the one that was tested is not needed"
+                                                            : ": none of the " + tested_in_words(d) + " that were tested is needed");
     auto forces = fit_->driven ? force_strengths(fit_->force) : std::vector<ForceStrength>{};
     constexpr double sigmas = 2.0;
     std::erase_if(forces, [](const ForceStrength& f) { return !(f.strength.value > sigmas * f.strength.sigma); });
     if (!forces.empty()) {
-      say(VerdictKind::random_force, tested + ", and what is left is a random force of " + in_words(forces), "");
+      say(VerdictKind::random_force, tested + ", and what is left is a random force of " + in_words(forces), export_command());
     } else {
-      say(VerdictKind::nothing_missing, tested, "");
+      say(VerdictKind::nothing_missing, tested, export_command());
     }
   }
 

@@ -54,6 +54,7 @@ Rung rung_of(const Session& session, const FilterWork& work) {
   KStepErrors free_runs = k_step_errors(*work.estimate);
   rung.k_step = std::move(free_runs.rms);
   rung.note = std::move(free_runs.words);
+  if (!rung.validation_rms.empty()) rung.validation_k_step = k_step_errors(*work.estimate, true).rms;
   rung.trim = work.fit.trim;
   rung.estimates.emplace();
   for (const auto& [name, estimate] : work.fit.parameters) {
@@ -175,6 +176,13 @@ ContainedFit begin_with(const FilterWork& parent, const std::optional<Candidate>
   out.refit_values = from->refit_values;
   out.refit_log_noise = from->refit_log_noise;
   return out;
+}
+
+/// Where the study holds nothing out, discovery does for its refits: what that said, which the rung cannot.
+std::string gain_of_search_in_words(const Rung& rung, const Candidate& from) {
+  if (rung.validation_loglik || !from.held_out_gain) return "";
+  return fmt::format("the study holds nothing out; discovery fitted without the last quarter: gain of its log-likelihood {:+.1f}",
+                     *from.held_out_gain);
 }
 
 /// Why discovery could not say beforehand what an effect would bring.
@@ -327,6 +335,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));
     const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.progress_of("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
+    if (from) append_note(rung.note, gain_of_search_in_words(rung, *from));
   }
   append(std::move(rung));
   last_ = std::move(child);

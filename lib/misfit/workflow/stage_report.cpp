@@ -5,6 +5,7 @@
 #include <ctime>
 #include <utility>
 
+#include "misfit/compare/compare.h"
 #include "misfit/core/files.h"
 #include "misfit/core/version.h"
 #include "misfit/jobs/interrupt.h"
@@ -82,6 +83,18 @@ void add_findings(const Session& session, report::ReportInput& input, std::vecto
   input.rung = report::RungInput{above->rung, above->added, std::move(above->findings.diagnosis), std::move(above->findings.discovery)};
 }
 
+/// The fits of the ladder's last rung, in the out/ beside its study, and the files they are in.
+void add_last_model(Session& session, report::ReportInput& input, std::vector<fs::path>& files) {
+  if (!input.ladder || input.ladder->rungs.size() < 2) return;
+  const Rung& last = input.ladder->rungs.back();
+  const fs::path fit = session.folder.file(last.study).parent_path() / "out" / "fit" / last.method;
+  if (!fs::exists(fit / "fit.json")) return;
+  report::LastModel model{last.id, last.added, {read_fit(fit)}, {}};
+  model.comparison = compare(model.fits, references(session));
+  input.last_model = std::move(model);
+  for (const fs::directory_entry& file : fs::directory_iterator(fit)) files.push_back(file.path());
+}
+
 /// The study's own model and its rungs; what the document omits of them is omitted here, too.
 std::vector<page::Place> shown_places(const Session& session, const std::vector<Fit>& fits, const report::ReportInput& input) {
   std::vector<page::Place> places = page::places_of(session.study.file, session.folder.path(), known_ladder(session).has_value());
@@ -107,6 +120,7 @@ fs::path report_stage(Session& session, const std::vector<Fit>& fits) {
   input.ladder = known_ladder(session);
   std::vector<fs::path> files = files_of_report(session, fits);
   add_findings(session, input, files);
+  add_last_model(session, input, files);
   input.uncertainty = known_uncertainty(session);
   if (input.uncertainty) files.push_back(session.folder.file("uncertainty.json"));
   input.resampling = known_resampling(session);
