@@ -66,6 +66,16 @@ TEST(SignalsFrom, AnInputIsUnwrappedAndMissingValuesAreBridgedButNotUsed) {
   EXPECT_TRUE(s.inputs[1].values.empty());  // phi_rate: nobody needs it
 }
 
+/// Whether it acts is for discovery to ask; with gaps, its samples would not count once it does.
+TEST(SignalsFrom, AnInputThatNobodyNeedsIsReadWhereItIsWhole) {
+  Table table = recording(50);
+  EXPECT_EQ(signals_from(table, eq_8(), plain()).inputs[0].values.size(), 50U);
+  table.columns[2].values[10] = std::nan("");
+  const Signals s = signals_from(table, eq_8(), plain());
+  EXPECT_TRUE(s.inputs[0].values.empty());
+  EXPECT_FALSE(std::isnan(s.measured.front().values[10]));
+}
+
 /// Five seconds of an input in this unit, recorded as the column `u` or, where it is called u_rate, as this level in that unit.
 Signals with_angle(const std::string& input, const std::string& unit, const std::vector<double>& u, const std::string& recorded_unit) {
   const auto registry = testing_models::registry_with("[states]\nx = { unit = \"rad\" }\n[inputs]\n" + input + " = { unit = \"" + unit +

@@ -1,5 +1,9 @@
 // An input that a system declares and no equation needs, as `misfit init` leaves it beside a model that the data want without it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
 
 #include "misfit/workflow/assess/assess.h"
 #include "tests/workflow/swing.h"
@@ -26,6 +30,57 @@ TEST(AnInputThatNoEquationNeeds, DoesNotHinderAComparisonFromALaterSampleOn) {
   TextStudy study(testing_swing::system(valve), testing_swing::recording(7));
   Identification identification = study.identification("filter_error", "", "exclude = 7\n");
   EXPECT_TRUE(compare_stage(identification.session(), identification.fit()).motion);
+}
+
+/// y' = u + valve - y, of whose inputs the model has u alone.
+TextStudy of_two_inputs(const std::string& missing = "") {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::string text = "t[s],u[V],valve[V],y[V]\n";
+  double y = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    const int u = k / 40 % 3, valve = k / 56 % 2;
+    text += fmt::format("{:.1f},{},{},{:.4f}\n", 0.1 * k, u, k == 500 && !missing.empty() ? missing : std::to_string(valve),
+                        y + 0.02 * normal(random));
+    y += (u + valve - y) * (1.0 - std::exp(-0.1));
+  }
+  return {R"toml([system]
+doc = "first order"
+[states]
+y = { unit = "V", initial = "free" }
+[inputs]
+u = { unit = "V", hold = "zero_order" }
+valve = { unit = "V", hold = "zero_order" }
+[parameters]
+tau = { unit = "s", value = 1.2, bounds = [0.01, 100.0], free = true }
+gain = { unit = "-", value = 0.8, free = true }
+rest = { unit = "V", value = 0.0, free = true }
+[equations]
+y = "(rest + gain*u - y)/tau"
+[outputs]
+y = { unit = "V", noise = 0.02 }
+)toml",
+          text};
+}
+
+TEST(AnInputThatNoEquationNeeds, IsFoundToActWhereItActs) {
+  const TextStudy study = of_two_inputs();
+  Identification identification = study.identification("filter_error", "");
+  const auto valve = predict_effect(identification.session(), "input_gain", asked_place({"input=valve"}));
+  ASSERT_TRUE(valve);
+  EXPECT_FALSE(valve->absorbed) << valve->why;
+  EXPECT_GT(valve->predicted_drop, 50.0);
+  const auto u = predict_effect(identification.session(), "input_gain", asked_place({"input=u", "port=dy/dt"}));
+  ASSERT_TRUE(u) << "its default place may be named";
+  EXPECT_TRUE(u->roles.empty());
+  EXPECT_TRUE(u->absorbed) << "its gain is free";
+}
+
+/// The fit did without its values, so that there is nothing to test.
+TEST(AnInputThatNoEquationNeeds, IsNotCalledDescribedWhereItHasGaps) {
+  const TextStudy study = of_two_inputs("nan");
+  Identification identification = study.identification("filter_error", "");
+  EXPECT_THROW(static_cast<void>(predict_effect(identification.session(), "input_gain", asked_place({"input=valve"}))), InputError);
 }
 
 }  // namespace

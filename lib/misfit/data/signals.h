@@ -19,8 +19,8 @@ struct Signals {
   std::string name;
   std::vector<double> t;  ///< [s], strictly increasing, may be uneven
   std::vector<Signal> measured;
-  std::vector<Signal> inputs;                                        ///< no missing values; empty those that the model does not need
-  std::size_t exclude = 0;                                           ///< initial samples not counted in errors
+  std::vector<Signal> inputs;  ///< no missing values; empty: not needed by the model, and not recorded whole
+  std::size_t exclude = 0;     ///< initial samples not counted in errors
   double validation_from = std::numeric_limits<double>::infinity();  ///< samples with validation_from <= t < validation_to are held out [s]
   double validation_to = std::numeric_limits<double>::infinity();
   bool after_gap = false;  ///< goes on where the one before stops, after a gap too long to be bridged: its initial states are its own

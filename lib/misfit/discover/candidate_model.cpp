@@ -204,6 +204,16 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
   return out;
 }
 
+/// An input that the model did without so far may have no values (Signals::inputs).
+bool has_its_inputs(const FilterEstimate& estimate, const Model& model) {
+  const std::vector<std::string> needed = model.needed_inputs();
+  return std::all_of(estimate.data.begin(), estimate.data.end(), [&](const FilterData& data) {
+    return std::none_of(data.signals->inputs.begin(), data.signals->inputs.end(), [&](const Signal& input) {
+      return input.values.empty() && std::find(needed.begin(), needed.end(), input.name) != needed.end();
+    });
+  });
+}
+
 /// The model with the effect there, all fixed at the estimate; nullopt where the effect does not suit.
 std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                                  const EffectPlace& place) {
@@ -218,6 +228,7 @@ std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate,
   } catch (const InputError&) {
     return std::nullopt;
   }
+  if (!has_its_inputs(estimate, out.model)) return std::nullopt;
   const bool on_sensor = out.model.effects.back().kind == PortKind::sensor;
   out.family = on_sensor ? CandidateFamily::sensor : is_generic(effect.spec()) ? CandidateFamily::generic : CandidateFamily::physics;
   for (auto& p : out.model.parameters) p.free = false;

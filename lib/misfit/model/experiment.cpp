@@ -109,7 +109,7 @@ class Reader {
     }
     const std::vector<std::string> needed = model_.needed_inputs();
     for (const auto& input : spec.inputs) {
-      const bool wanted = std::find(needed.begin(), needed.end(), input.name) != needed.end();
+      const bool wanted = std::find(needed.begin(), needed.end(), input.name) != needed.end() || is_recorded_whole(input);
       out_.inputs.push_back({input.name, input.unit, wanted ? read_input(input) : std::vector<double>{}, 0.0});
     }
     split();
@@ -146,6 +146,13 @@ class Reader {
       throw RunError("experiment '" + shown(study_.name) + "': " + std::to_string(rows_.size()) +
                      " samples with a time are not a recording");
     for (std::size_t row : rows_) out_.t.push_back(t[row]);
+  }
+
+  /// Then it is read even where the model does not need it: discovery asks whether it acts.
+  bool is_recorded_whole(const InputSpec& input) const {
+    const Column* column = table_.find(header(input.name));
+    return column != nullptr &&
+           std::all_of(rows_.begin(), rows_.end(), [&](std::size_t row) { return std::isfinite(column->values[row]); });
   }
 
   std::vector<double> read_input(const InputSpec& input) {

@@ -57,13 +57,14 @@ struct UsableSamples {
 
 UsableSamples usable_samples(const Model& model, const Signals& signals) {
   const auto& inputs = model.system->spec().inputs;
+  const std::vector<std::string> needed = model.needed_inputs();
   const std::size_t n = signals.samples();
   UsableSamples out{std::vector<bool>(n, true)};
   const double reach = have_own_clocks(signals) ? 2.0 * step_of_measurements(signals) : 0.0;
   for (std::size_t k = 0; k < inputs.size() && k < signals.inputs.size(); ++k) {
-    if (inputs[k].hold != Hold::zero_order) continue;
-    const std::vector<double>& u = signals.inputs[k].values;  // empty where the model does not need it
-    for (std::size_t i = 1; i < u.size(); ++i) {
+    if (inputs[k].hold != Hold::zero_order || std::find(needed.begin(), needed.end(), inputs[k].name) == needed.end()) continue;
+    const std::vector<double>& u = signals.inputs[k].values;
+    for (std::size_t i = 1; i < n; ++i) {
       if (u[i] == u[i - 1]) continue;
       for (std::size_t at = i - 1; at <= std::min(i + 1, n - 1); ++at) out.usable[at] = false;
       for (std::size_t at = i; at-- > 0 && signals.t[i] - signals.t[at] < reach;) out.usable[at] = false;

@@ -11,6 +11,7 @@
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/job_queue.h"
 #include "misfit/jobs/ranks.h"
+#include "misfit/model/provisional.h"
 #include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
@@ -42,21 +43,31 @@ Discovery search(Session& session, const std::string& only, std::function<bool(c
   }
 }
 
-bool is_at(const Candidate& candidate, const AskedPlace& place) {
+using Roles = std::map<std::string, std::string>;
+
+bool is_at(const Candidate& candidate, const Roles& by_default, const AskedPlace& place) {
   if (place.by_default) return candidate.roles.empty();
+  const Roles& own = candidate.roles.empty() ? by_default : candidate.roles;
   return std::all_of(place.roles.begin(), place.roles.end(), [&](const auto& role) {
-    const auto found = candidate.roles.find(role.first);
-    return found != candidate.roles.end() && found->second == role.second;
+    const auto found = own.find(role.first);
+    return found != own.end() && found->second == role.second;
   });
 }
 
+/// "--at default (input=u, port=dw/dt)" or "--at input=u2 --at port=dw/dt".
+std::string place_in_words(const Candidate& candidate, const Roles& by_default) {
+  const std::string words = fmt::format(" --at {}", fmt::join(words_of_place(candidate), " --at "));
+  return candidate.roles.empty() && !by_default.empty() ? fmt::format("{} ({})", words, fmt::join(words_of_place(by_default), ", "))
+                                                        : words;
+}
+
 /// nullptr: the effect is not listed. InputError: it is, but at other places only.
-const Candidate* candidate_at(const Discovery& discovery, const std::string& effect, const AskedPlace& place) {
+const Candidate* candidate_at(const Discovery& discovery, const std::string& effect, const Roles& by_default, const AskedPlace& place) {
   std::string others;
   for (const auto& candidate : discovery.candidates) {
     if (candidate.effect != effect) continue;
-    if (is_at(candidate, place)) return &candidate;
-    others += (others.empty() ? " --at " : " | --at ") + fmt::format("{}", fmt::join(words_of_place(candidate), " --at "));
+    if (is_at(candidate, by_default, place)) return &candidate;
+    others += (others.empty() ? "" : " |") + place_in_words(candidate, by_default);
   }
   if (others.empty()) return nullptr;
   throw InputError("--at: discovery does not list " + effect + " there, but at" + others);
@@ -79,13 +90,27 @@ AskedPlace asked_place(const std::vector<std::string>& words) {
   return out;
 }
 
+std::map<std::string, std::string> default_place(const Session& session, const std::string& effect) {
+  const EffectSpec& spec = session.registry.effect(effect).spec();
+  const Model model = provisional_model(session.model.request, session.registry);
+  Roles out;
+  for (const auto* list : {&spec.quantities, &spec.ports}) {
+    for (const Role& role : *list) {
+      const auto found = model.system->spec().roles.find(role.name);
+      if (found != model.system->spec().roles.end()) out[role.name] = found->second;
+    }
+  }
+  return out;
+}
+
 std::optional<Candidate> predict_effect(Session& session, const std::string& effect, const AskedPlace& place) {
   if (filter_declined(session)) refuse_declined(session);
   stop_if_interrupted();
   const bool listed = !session.registry.effect(effect).spec().has_unknown_form();  // those are listed as unknown curves
+  const Roles by_default = default_place(session, effect);
   const auto known = listed ? known_discovery(session) : std::nullopt;
-  const Discovery discovery = known ? *known : search(session, effect, [&](const Candidate& c) { return is_at(c, place); });
-  const Candidate* found = candidate_at(discovery, effect, place);
+  const Discovery discovery = known ? *known : search(session, effect, [&](const Candidate& c) { return is_at(c, by_default, place); });
+  const Candidate* found = candidate_at(discovery, effect, by_default, place);
   return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
