@@ -47,5 +47,14 @@ TEST(RoleUnits, ARoleMayHaveABrokenPower) {
   EXPECT_EQ(bind_unit("1/{root}", {{"root", "V^-0.5"}}), "V^0.5");
 }
 
+TEST(RoleUnits, ARoleIsRaisedToThePowerBehindIt) {
+  EXPECT_EQ(bind_unit("{level}^0.5/s", roles), "V^0.5/s");
+  EXPECT_EQ(bind_unit("1/{level}^(1/2)", roles), "1/V^0.5");
+  EXPECT_EQ(bind_unit("{port}/{rate}^2 s", roles), "N m s^3/rad^2");
+  EXPECT_EQ(bind_unit("{flat}^0.5", roles), "-");
+  EXPECT_THROW(static_cast<void>(bind_unit("{level}^", roles)), InputError);
+  EXPECT_THROW(static_cast<void>(bind_unit("{level}^(1/2", roles)), InputError);
+}
+
 }  // namespace
 }  // namespace misfit
