@@ -71,9 +71,15 @@ std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covarianc
     return "the model's " + map.port + " depends otherwise on " + map.quantity +
            " than the data say, though no range of it stands out: the values of the map are correlated";
   const double half = map.x.size() > 1 ? 0.5 * (map.x[1] - map.x[0]) : 0.0;
+  double low = map.x[best_from] - half, high = map.x[best_to] + half;
+  if (map.quantity == time_of_day) {  // hats at both ends go past midnight
+    constexpr double day = 24.0;      // [h], as features.cpp has it
+    low = std::max(low, 0.0);
+    high = std::min(high, day);
+  }
   return "the model's " + map.port + " is " + in_display_unit(std::abs(best.value), map.port_unit, std::sqrt(best.variance)) +
-         (best.value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
-         place(map.x[best_from] - half, half, map.quantity_unit) + " and " + place(map.x[best_to] + half, half, map.quantity_unit);
+         (best.value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " + place(low, half, map.quantity_unit) +
+         " and " + place(high, half, map.quantity_unit);
 }
 
 namespace {
