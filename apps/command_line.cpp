@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <string_view>
@@ -105,8 +106,10 @@ void refuse_unknown_verb(const std::string& verb) {
 
 /// A table is no study: what makes one of it.
 void refuse_table(const std::string& verb, const std::string& study) {
-  if (verb != "init" && !study.ends_with(".toml") && is_recording_name(study))
-    throw InputError(shown(study) + " is a recording, not a study; misfit init " + shown(study) + " makes a study of it");
+  if (verb == "init" || study.ends_with(".toml") || !is_recording_name(study)) return;
+  std::error_code error;
+  if (!std::filesystem::exists(study, error)) throw InputError({study, 0, 0}, "no such file");
+  throw InputError(shown(study) + " is a recording, not a study; misfit init " + shown(study) + " makes a study of it");
 }
 
 int dispatch(int argc, char** argv, const Registry& registry, PrintableStream& out) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/verbs.h"
+#include "misfit/core/shell_word.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
 #include "misfit/data/study_edit.h"
@@ -178,6 +179,11 @@ Chosen chosen(const Options& options, const Registry& registry) {
 
 int effects_verb(const Options& options, const Registry& registry) {
   const Chosen known = chosen(options, registry);
+  if (known.effects.empty() && !options.json) {
+    const std::string study = shell_word(options.session.study);
+    std::cout << fmt::format(
+        "{0} has no effects yet: misfit discover {0} tests which of the library it is missing; misfit help effects lists those\n", study);
+  }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const EffectSpec* spec : known.effects) {
     if (options.json) {

@@ -73,23 +73,40 @@ std::string effects_text(const Registry& registry) {
   return out;
 }
 
+/// Methods, and words of the aircraft and parachutes of the examples.
+Glossary words_of_examples() {
+  return {
+      {"sliding_bin", "method: static and damping curves by regression over windows of the motion"},
+      {"equation_error", "method: regression of measured derivatives on the equations; fast, and biased by measurement noise"},
+      {"output_error", "method: the trajectory from the initial state and the inputs is fitted to the measurements; no random force"},
+      {"filter_error", "method: a Kalman filter, whose innovations are made as likely as possible; with a random force beside the model"},
+      {"C_m_alphadot, C_mq", "derivatives of the pitching moment by the rate of the angle of attack, and by the pitch rate"},
+      {"coning", "motion of an axis around a cone: a steady angle of attack that turns about the direction of flight"},
+      {"spherical system", "a body on a pivot that is free to swing in both directions, unlike the planar one, which swings in a plane"}};
+}
+
 std::string words_text() {
   std::string out;
   const auto add = [&out](const Glossary& terms) {
     for (const auto& [word, meaning] : terms) {
-      const std::string lines = wrap_text(meaning, columns, std::string(19, ' '));
-      out += "  " + std::string(word) + lines.substr(2 + std::string_view(word).size()) + "\n";
+      constexpr std::size_t column = 19;
+      const std::string lines = wrap_text(meaning, columns, std::string(column, ' ')), term = "  " + std::string(word);
+      out += (term.size() < column ? term + lines.substr(term.size()) : term + "\n" + lines) + "\n";
     }
   };
   add(main_glossary());
   out += "\n";
   add(further_glossary());
+  out += "\n";
+  add(words_of_examples());
   return out;
 }
 
 std::string data_text() {
   const std::vector<std::pair<const char*, const char*>> formats = {
-      {"CSV", "columns under a line of names with units, t[s],u[V],w[rad/s]; commas, semicolons, tabs or blanks; dates as a time"},
+      {"CSV",
+       "columns under a line of names with units, t[s],u[V],w[rad/s]; commas, semicolons, tabs or blanks; dates as a time "
+       "(by misfit init, which writes seconds; [[experiment]] data wants a number)"},
       {"MAT", "MATLAB 5 to 7.3: arrays of numbers, also in structs (s.w) and cells (c{1})"},
       {"HDF5", "arrays and tables of numbers (run1/w); units from the attribute \"units\""},
       {"NPY, NPZ", "NumPy: arrays, records, datetime64"},

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "misfit/core/files.h"
 #include "misfit/core/shell_word.h"
 #include "misfit/core/shown.h"
 
@@ -26,6 +28,7 @@ Found look(const fs::path& folder) {
     if (item.is_directory(none) && fs::exists(item.path() / "study.toml", none)) out.studies.push_back(name);
     if (item.is_regular_file(none) && item.path().extension() == ".csv") out.tables.push_back(name);
   }
+  std::erase_if(out.tables, [&](const std::string& table) { return fs::exists(folder / fs::path(table).stem() / "study.toml", none); });
   std::sort(out.studies.begin(), out.studies.end());
   std::sort(out.tables.begin(), out.tables.end());
   return out;
@@ -39,6 +42,30 @@ std::string commands(const std::vector<std::string>& names, const char* before) 
     out += fmt::format("  misfit {} {}\n", before, printable(shell_word(names[i])));
   if (names.size() > most) out += fmt::format("  … and {} more\n", names.size() - most);
   return out;
+}
+
+/// What a study has come to, in one line; "" where it has no verdict that can be read.
+std::string sentence_of(const fs::path& study) {
+  try {
+    return nlohmann::json::parse(read_file(study / "out/verdict.json")).at("sentence").get<std::string>();
+  } catch (const std::exception&) {
+    return "";
+  }
+}
+
+/// Those that have come to a verdict, with it; then how the others are run.
+std::string of_studies(const fs::path& folder, std::vector<std::string> names) {
+  std::string out;
+  constexpr std::size_t most = 5;
+  std::size_t said = 0;
+  std::erase_if(names, [&](const std::string& name) {
+    const std::string sentence = sentence_of(folder / name);
+    if (!sentence.empty() && ++said <= most)
+      out += fmt::format("  {}: {}\n      report: {}\n", printable(name), printable(sentence), printable(name + "/out/report.html"));
+    return !sentence.empty();
+  });
+  if (said > most) out += fmt::format("  … and {} more with a verdict\n", said - most);
+  return out + commands(names, "run");
 }
 
 std::string of_study(const fs::path& folder) {
@@ -59,7 +86,7 @@ std::string what_next(const fs::path& folder, const fs::path& examples) {
   const Found found = look(folder);
   const bool study = fs::exists(folder / "study.toml", none);
   if (study) out += of_study(folder);
-  if (!study && !found.studies.empty()) out += "Studies in this folder:\n" + commands(found.studies, "run");
+  if (!study && !found.studies.empty()) out += "Studies in this folder:\n" + of_studies(folder, found.studies);
   if (!study && !found.tables.empty()) out += "Recordings in this folder; a first study of one:\n" + commands(found.tables, "init");
   if (!study && found.studies.empty() && found.tables.empty()) {
     out += "No study and no CSV file in this folder. With a recording of your own (a header line, then numbers):\n  misfit init DATA.csv\n";

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "apps/what_next.h"
 #include "tests/apps/program.h"
 #include "tests/paths.h"
 
@@ -34,7 +35,7 @@ TEST(CommandLine, AMistakeIsNamedAndEndsWithTwo) {
                                                           {{"fit", "x", "--metod", "output_error"}, "did you mean '--method'"},
                                                           {{"fit", "x", "--metod=output_error"}, "did you mean '--method'"},
                                                           {{"fit", "x", "--method", "outputerror"}, "did you mean 'output_error'"},
-                                                          {{"fit", "motor.csv"}, "misfit init motor.csv"},
+                                                          {{"fit", "motor.csv"}, "motor.csv: no such file"},
                                                           {{"export", "x"}, "--to"},
                                                           {{"export", "x", "--to", "pyton"}, "did you mean 'python'"},
                                                           {{"run", "x", "--threads", "many"}, "--threads"},
@@ -178,6 +179,26 @@ TEST(Simulate, WithoutTablesSaysWhatIsMissing) {
   const Outcome outcome = study.run("simulate");
   EXPECT_EQ(outcome.status, 2);
   expect_parts(outcome.err, {"study.toml", "C_m", "table"});
+}
+
+TEST(CommandLine, ARecordingIsNoStudyAndIsSaidToBeOneOnlyWhereItIs) {
+  const TemporaryFolder folder;
+  const std::string data = folder.write("motor.csv", "t[s],u[V]\n0,1\n").string();
+  expect_parts(run({"discover", data}).err, {("misfit init " + data).c_str()});
+  expect_parts(run({"discover", data + "2.csv"}).err, {"no such file"});
+}
+
+TEST(CommandLine, OfAFolderOfStudiesSaysWhatTheyHaveComeToAndWhatIsNext) {
+  const TemporaryFolder folder;
+  for (const char* name : {"done", "begun"}) {
+    fs::create_directories(folder.path() / name / "out");
+    folder.write(std::string(name) + "/study.toml", "");
+  }
+  folder.write("done/out/verdict.json", R"({"sentence": "nothing is found missing."})");
+  for (const char* table : {"done.csv", "new.csv"}) folder.write(table, "");
+  const std::string words = misfit::what_next(folder.path(), {});
+  expect_parts(words, {"done: nothing is found missing.", "report: done/out/report.html", "misfit run begun", "misfit init new.csv"});
+  for (const char* not_again : {"misfit run done", "misfit init done.csv"}) EXPECT_EQ(words.find(not_again), std::string::npos) << words;
 }
 
 }  // namespace

@@ -187,6 +187,18 @@ TEST(LinearGuess, ADriverIsInTheModelOnlyWhereItIsNeeded) {
   EXPECT_EQ(lower.gain[1], 0.0);
 }
 
+/// An input that moves nothing, unless the user says that it acts.
+TEST(LinearGuess, AnInputThatTheUserNamesIsInTheModel) {
+  GuessData data = first_order(0.5, 0.01);
+  data.drivers.emplace_back();
+  for (std::size_t k = 0; k < data.t.size(); ++k) data.drivers[1].values.push_back(static_cast<double>(k / 70 % 3));
+  EXPECT_EQ(guess_linear(data).gain[1], 0.0);
+  data.drivers[1].named = true;
+  const LinearGuess guess = guess_linear(data);
+  EXPECT_NE(guess.gain[1], 0.0);
+  EXPECT_NEAR(guess.gain[0], 2.0, 0.3);
+}
+
 TEST(LinearGuess, WhereNothingCanBeFittedNoInputHasTheGainZero) {
   GuessData few;
   few.drivers.emplace_back();

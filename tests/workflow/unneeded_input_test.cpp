@@ -39,10 +39,10 @@ TextStudy of_two_inputs(const std::string& missing = "") {
   std::string text = "t[s],u[V],valve[V],y[V]\n";
   double y = 0.0;
   for (int k = 0; k < 1000; ++k) {
-    const int u = k / 40 % 3, valve = k / 56 % 2;
-    text += fmt::format("{:.1f},{},{},{:.4f}\n", 0.1 * k, u, k == 500 && !missing.empty() ? missing : std::to_string(valve),
+    const int u = k / 40 % 3, opening = k / 56 % 2;
+    text += fmt::format("{:.1f},{},{},{:.4f}\n", 0.1 * k, u, k == 500 && !missing.empty() ? missing : std::to_string(opening),
                         y + 0.02 * normal(random));
-    y += (u + valve - y) * (1.0 - std::exp(-0.1));
+    y += (u + opening - y) * (1.0 - std::exp(-0.1));
   }
   return {R"toml([system]
 doc = "first order"
@@ -66,10 +66,10 @@ y = { unit = "V", noise = 0.02 }
 TEST(AnInputThatNoEquationNeeds, IsFoundToActWhereItActs) {
   const TextStudy study = of_two_inputs();
   Identification identification = study.identification("filter_error", "");
-  const auto valve = predict_effect(identification.session(), "input_gain", asked_place({"input=valve"}));
-  ASSERT_TRUE(valve);
-  EXPECT_FALSE(valve->absorbed) << valve->why;
-  EXPECT_GT(valve->predicted_drop, 50.0);
+  const auto of_valve = predict_effect(identification.session(), "input_gain", asked_place({"input=valve"}));
+  ASSERT_TRUE(of_valve);
+  EXPECT_FALSE(of_valve->absorbed) << of_valve->why;
+  EXPECT_GT(of_valve->predicted_drop, 50.0);
   const auto u = predict_effect(identification.session(), "input_gain", asked_place({"input=u", "port=dy/dt"}));
   ASSERT_TRUE(u) << "its default place may be named";
   EXPECT_TRUE(u->roles.empty());

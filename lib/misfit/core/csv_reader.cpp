@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "misfit/core/error.h"
+#include "misfit/core/iso_date.h"
 #include "misfit/core/mapped_file.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/table.h"
@@ -149,8 +150,9 @@ class CsvReader {
     for (std::size_t j = 0; j < fields_.size(); ++j) {
       const std::optional<double> value = parse_number(fields_[j]);
       if (!value && !text_allowed_[j]) {
-        fail(number, "column '" + shown(table_.columns[j].header()) + "': '" + shown(fields_[j]) +
-                         "' is not a finite number (leave a missing value empty)");
+        fail(number, "column '" + shown(table_.columns[j].header()) + "': '" + shown(fields_[j]) + "' is not a finite number (" +
+                         (read_iso_date(fields_[j]) ? "dates are read by misfit init, which writes them as seconds)"
+                                                    : "leave a missing value empty)"));
       }
       table_.columns[j].values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
     }

@@ -56,10 +56,15 @@ double half_step(const ForceMap& map) { return map.x.size() > 1 ? 0.5 * (map.x[1
 
 /// Of the range of a hat; nothing was recorded beyond the first and the last time.
 double lower_edge(const ForceMap& map, std::size_t hat) {
-  return map.quantity == time_of_recording && hat == 0 ? map.x[hat] : map.x[hat] - half_step(map);
+  if (map.quantity == time_of_recording && hat == 0) return map.x[hat];
+  const double edge = map.x[hat] - half_step(map);
+  return map.quantity == time_of_day ? std::max(edge, 0.0) : edge;  // hats at both ends go past midnight
 }
 double upper_edge(const ForceMap& map, std::size_t hat) {
-  return map.quantity == time_of_recording && hat + 1 == map.x.size() ? map.x[hat] : map.x[hat] + half_step(map);
+  if (map.quantity == time_of_recording && hat + 1 == map.x.size()) return map.x[hat];
+  constexpr double day = 24.0;  // [h], as features.cpp has it
+  const double edge = map.x[hat] + half_step(map);
+  return map.quantity == time_of_day ? std::min(edge, day) : edge;
 }
 
 }  // namespace

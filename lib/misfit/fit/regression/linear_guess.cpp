@@ -170,6 +170,10 @@ void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) con
 void WindowSearch::drop_drivers(const Fits& fits, Found& found) const {
   constexpr double enough = 0.8, enough_of_output = 0.5;
   for (std::size_t i = 1; i < found.terms.size() && found.terms.size() > 2;) {
+    if (drivers_[found.terms[i]].named) {
+      ++i;
+      continue;
+    }
     std::vector<Eigen::Index> terms = found.terms;
     terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(i));
     const Found without = best_of(fits, terms);
@@ -198,7 +202,11 @@ void WindowSearch::refine(Found& found) const {
 
 Found WindowSearch::best(int order, bool pulled) const {
   const Fits fits = on_grid(order, pulled);
-  Found found = best_of(fits, {std::ssize(drivers_)});
+  std::vector<Eigen::Index> terms{std::ssize(drivers_)};
+  for (std::size_t i = 0; i < drivers_.size(); ++i) {
+    if (drivers_[i].named && !spreads_[i].constant()) terms.push_back(static_cast<Eigen::Index>(i));
+  }
+  Found found = best_of(fits, terms);
   add_drivers(fits, false, found);
   add_drivers(fits, true, found);
   drop_drivers(fits, found);

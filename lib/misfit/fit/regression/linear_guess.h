@@ -10,6 +10,7 @@ struct GuessDriver {
   std::vector<double> values;  ///< as long as t; NaN: missing
   bool smooth = false;         ///< measured: straight between samples; else held until the next
   bool output = false;         ///< another output: taken only if it explains much
+  bool named = false;          ///< by the user: in the model unless it is constant
 };
 
 /// One output with what may drive it; NaN: missing.
@@ -35,12 +36,12 @@ struct LinearGuess {
 
 /// Order, drivers and parameters by the data: models are fitted over every second window of about two swings, each with its own initial
 /// state (linear_windows.h), and compared over the windows between. A driver is in the model if the held-out error (mean square less the
-/// measurement noise, at least 0.3 of it) falls with it by 20 %, another output if it falls by half; of inputs the best one always is;
-/// what is constant, but for rounding, never is.
-/// Order 2 is taken if the rate is measured, or if it halves the held-out error of order 1 and its damping ratio is below 0.9 (two time
-/// constants are one and a lag, which discovery names). Where order 1 with a drift in time halves that of order 1 without, and leaves no
-/// more than order 2 without a pull back, it is order 1, without the drift; a pull back to rest if the mean square is 0.5 % higher without.
-/// Where nothing can be fitted: order 1 with a tenth of the record as tau, and every input with the gain σ(y)/σ(u).
+/// measurement noise, at least 0.3 of it) falls with it by 20 %, another output if it falls by half; of inputs the best one always is, and
+/// so are those that the user named; what is constant, but for rounding, never is. Order 2 is taken if the rate is measured, or if it
+/// halves the held-out error of order 1 and its damping ratio is below 0.9 (two time constants are one and a lag, which discovery names).
+/// Where order 1 with a drift in time halves that of order 1 without, and leaves no more than order 2 without a pull back, it is order 1,
+/// without the drift; a pull back to rest if the mean square is 0.5 % higher without. Where nothing can be fitted: order 1 with a tenth of
+/// the record as tau, and every input with the gain σ(y)/σ(u).
 [[nodiscard]] LinearGuess guess_linear(const GuessData& data);
 
 }  // namespace misfit

@@ -33,8 +33,6 @@ struct AskedPlace {
 };
 /// "ROLE=NAME" each, or "default" alone. InputError: neither.
 [[nodiscard]] AskedPlace asked_place(const std::vector<std::string>& words);
-/// Where an effect goes without roles: those of its roles for which the system has a default.
-[[nodiscard]] std::map<std::string, std::string> default_place(const Session& session, const std::string& effect);
 /// What discovery says of one effect, at the best place that is as asked for: from the whole search where that is on disk, else it alone is
 /// screened, and refitted if it may be significant. nullopt if it cannot be screened (it has no strength, or is driven by noise, or stands
 /// for another). InputError: it can, but at other places only.

@@ -11,7 +11,6 @@
 #include "misfit/jobs/interrupt.h"
 #include "misfit/jobs/job_queue.h"
 #include "misfit/jobs/ranks.h"
-#include "misfit/model/provisional.h"
 #include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
@@ -85,19 +84,6 @@ AskedPlace asked_place(const std::vector<std::string>& words) {
       throw InputError("--at " + shown(word) + ": ROLE=NAME is expected, such as rate=w, or default alone");
     } else {
       out.roles[word.substr(0, equals)] = word.substr(equals + 1);
-    }
-  }
-  return out;
-}
-
-std::map<std::string, std::string> default_place(const Session& session, const std::string& effect) {
-  const EffectSpec& spec = session.registry.effect(effect).spec();
-  const Model model = provisional_model(session.model.request, session.registry);
-  Roles out;
-  for (const auto* list : {&spec.quantities, &spec.ports}) {
-    for (const Role& role : *list) {
-      const auto found = model.system->spec().roles.find(role.name);
-      if (found != model.system->spec().roles.end()) out[role.name] = found->second;
     }
   }
   return out;

@@ -97,7 +97,7 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
         c->is_measured_input ? "; it varies smoothly, so straight between samples"
         : steps              ? ""
                              : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
-    data.drivers.push_back({table.values(c->name, model.input_units.back()), c->is_measured_input, false});
+    data.drivers.push_back({table.values(c->name, model.input_units.back()), c->is_measured_input, false, c->chosen_by_user});
   }
   note_left_out("inputs", left_out, fmt::format("a first model has at most {} inputs", most_guessed.inputs), model.remarks);
 }
@@ -189,7 +189,7 @@ void note_unneeded_inputs(GuessedModel& model) {
   if (unneeded.empty()) return;
   model.remarks.push_back(
       fmt::format("in no equation of the first model: {}; with it, the held-out error falls by less than 20 % "
-                  "(input_gain would add it)",
+                  "(--input puts those that it names in the equations; misfit discover tests the others, as input_gain)",
                   fmt::join(unneeded, ", ")));
 }
 

@@ -17,6 +17,7 @@
 #include "misfit/data/track.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/model/declared.h"
+#include "misfit/model/provisional.h"
 
 namespace misfit {
 namespace {
@@ -241,6 +242,19 @@ std::vector<Reference> references(const Session& session) {
   const SystemSpec spec = session.registry.system(request.system).make(request.options)->spec();
   for (const auto& [curve, file] : session.study.reference)
     out.push_back(read_reference(file, curve, spec.static_curve, spec.folded_angle));
+  return out;
+}
+
+std::map<std::string, std::string> default_place(const Session& session, const std::string& effect) {
+  const EffectSpec& spec = session.registry.effect(effect).spec();
+  const Model model = provisional_model(session.model.request, session.registry);
+  std::map<std::string, std::string> out;
+  for (const auto* list : {&spec.quantities, &spec.ports}) {
+    for (const Role& role : *list) {
+      const auto found = model.system->spec().roles.find(role.name);
+      if (found != model.system->spec().roles.end()) out[role.name] = found->second;
+    }
+  }
   return out;
 }
 
