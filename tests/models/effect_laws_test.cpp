@@ -1,4 +1,5 @@
 // Laws over every registered effect by itself. The author of an effect writes nothing here. Laws inside a system: effect_systems_test.cpp.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -241,7 +242,8 @@ TEST_P(EffectLaws, JetDerivativesAreCentralDifferencesNearZeroOfEachQuantity) {
       for (double value : {0.0, 1e-9, -1e-6, 1e-3}) {
         Inputs in(example);
         in.row[i] = value;
-        expect_derivatives(in, std::string(spec_.quantities[i].name) + " = " + std::to_string(value));
+        expect_derivatives(in,
+                           fmt::format("{} = {:g} (a root or a quotient? .positive, or math/regular.h)", spec_.quantities[i].name, value));
       }
     }
   }
