@@ -146,10 +146,11 @@ class Extension {
   /// Of the rung of a curve of unknown form; empty: it stays.
   [[nodiscard]] std::string why_not_kept(const Rung& rung) const {
     const int more = parameters_added(rung);
-    if (gains_too_little(rung.actual_drop, rung.held_out_gain, more, families_))
+    if (gains_too_little(rung.actual_drop, rung.held_out_gain, more, families_)) {
       return fmt::format("gains too little for its {} coefficients (drop {}, held-out gain {})", more,
                          rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
                          rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown");
+    }
     const auto parent =
         std::find_if(ladder_.ladder().rungs.begin(), ladder_.ladder().rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
     const double growth = parent == ladder_.ladder().rungs.end() ? 1.0 : growth_of_errors(parent->k_step, rung.k_step);
