@@ -73,16 +73,16 @@ std::string effects_text(const Registry& registry) {
   return out;
 }
 
-/// Methods, and words of the aircraft and parachutes of the examples.
+/// Methods, as their table describes them, and words of the parachutes of the examples.
 Glossary words_of_examples() {
-  return {
-      {"sliding_bin", "method: static and damping curves by regression over windows of the motion"},
-      {"equation_error", "method: regression of measured derivatives on the equations; fast, and biased by measurement noise"},
-      {"output_error", "method: the trajectory from the initial state and the inputs is fitted to the measurements; no random force"},
-      {"filter_error", "method: a Kalman filter, whose innovations are made as likely as possible; with a random force beside the model"},
-      {"C_m_alphadot, C_mq", "derivatives of the pitching moment by the rate of the angle of attack, and by the pitch rate"},
-      {"coning", "motion of an axis around a cone: a steady angle of attack that turns about the direction of flight"},
-      {"spherical system", "a body on a pivot that is free to swing in both directions, unlike the planar one, which swings in a plane"}};
+  Glossary out;
+  for (const EstimatorInfo* method : estimators::all) out.emplace_back(method->name, method->doc);
+  out.insert(
+      out.end(),
+      {{"C_m_alphadot, C_mq", "derivatives of the pitching moment by the rate of the angle of attack, and by the pitch rate"},
+       {"coning", "motion of an axis around a cone: a steady angle of attack that turns about the direction of flight"},
+       {"spherical system", "a body on a pivot that is free to swing in both directions, unlike the planar one, which swings in a plane"}});
+  return out;
 }
 
 std::string words_text() {
