@@ -132,12 +132,10 @@ std::string data_text() {
          "\n  [[experiment]]\n  data = \"flight.ulg\"\n"
          "  columns = { w = \"vehicle_angular_velocity.xyz[0]\", u = \"actuator_controls_0.control[0]\" }\n\n" +
          paragraph(
-             "A recording is split where rows are missing for so long that an input of the model may have changed meanwhile (three times "
-             "the "
-             "step that 98 % of the steps do not exceed), and at gaps that are longer than 10 sampling intervals and also longer than "
-             "about "
-             "8 periods (50 rad) of the fastest motion: its parts, NAME_part_1 and so on, have initial states of their own. The model runs "
-             "across other gaps.") +
+             "A recording is split where rows are missing for so long that an input of the model may have changed meanwhile "
+             "(three times the step that 98 % of the steps do not exceed), and at gaps that are longer than 10 sampling intervals and "
+             "also longer than about 8 periods (50 rad) of the fastest motion: its parts, NAME_part_1 and so on, have initial states of "
+             "their own. The model runs across other gaps.") +
          "\n" +
          paragraph(
              "Units: SI and their kin, as us, ns, min, rpm, degC, \xC2\xB0, kW, mA, bar, km/h. An unknown unit of time is an "

@@ -452,6 +452,17 @@ TEST(Accept, ARefitThatHasNotConvergedIsNot) {
   EXPECT_EQ(ranked[0].candidate.why, "its refit has not converged: iteration limit");
 }
 
+/// As a refit that explains each sample, and whose free motion is that of a spring four times as stiff.
+TEST(Accept, WhatPredictsWorseFartherAheadIsNot) {
+  const World world = with_friction(0.2);
+  std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction")};
+  ASSERT_LT(HeldOut(world.estimate, world.signals, 1).growth_ahead(ranked[0].refit->estimate), 1.0) << "the truth";
+  for (Parameter& p : ranked[0].refit->estimate.forced.model.parameters) p.value *= p.name == "stiffness" ? 4.0 : 1.0;
+  world.accept(ranked);
+  EXPECT_FALSE(ranked[0].candidate.accepted);
+  EXPECT_THAT(ranked[0].candidate.why, testing::StartsWith("predictions farther ahead get worse: their RMS errors grow "));
+}
+
 TEST(Accept, ARefitThatCouldGainLittleMoreIs) {
   const World world = with_friction(0.2);
   std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction")};

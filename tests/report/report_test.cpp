@@ -161,6 +161,30 @@ TEST(Report, OfALadderTheLastRungIsOpenTheOthersCanBeChosenAndTheWordsAreExplain
   EXPECT_NE(page.find("<td>held-out gain</td>"), std::string::npos);
 }
 
+TEST(Report, ResultsOfTheLastModelComeBeforeThoseOfTheStudysOwn) {
+  const TemporaryFolder folder;
+  ReportInput input = example();
+  Rung added;
+  added.id = 1;
+  added.parent = 0;
+  added.added = "strut_wake";
+  input.ladder = Ladder{{Rung{}, added}};
+  LastModel last{1, "strut_wake", {input.fits[0]}, {}};
+  last.fits[0].parameters = {{"R_cp", {3.27, 0.01, "m"}}};
+  input.last_model = last;
+  const std::string page = read_file(write_report(folder.path(), input));
+  EXPECT_EQ(html_faults(page), std::vector<std::string>{});
+  for (const char* section : {"Results", "Curves", "Predicted motion and residuals", "Parameters"}) {
+    const std::size_t of_last = page.find(section + std::string(": rung 1, strut_wake added</h2>"));
+    const std::size_t of_study = page.find(section + std::string(": the study&#39;s own model (rung 0)</h2>"));
+    ASSERT_NE(of_last, std::string::npos) << section;
+    ASSERT_NE(of_study, std::string::npos) << section;
+    EXPECT_LT(of_last, of_study) << section;
+  }
+  EXPECT_LT(page.find("3.27"), page.find("3.15")) << "R_cp of the last model, then of the study's";
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures/rung_01_curve_C_m.svg"));
+}
+
 TEST(Report, PagesOnPaperHaveNumbersTheStudyAndTheDate) {
   const TemporaryFolder folder;
   ReportInput input = example();

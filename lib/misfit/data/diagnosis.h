@@ -21,6 +21,9 @@ struct WhitenessReport {
   double peak_p = 1.0;                            ///< corrected for the number of frequencies (Fisher's g)
 };
 
+/// Seconds of a recording: the only quantity of a map that has a first and a last value.
+inline constexpr const char* time_of_recording = "time";
+
 /// Force on a port that the data ask for, by place of a quantity: amplitude of hat functions on top of the fitted model, free parameters
 /// projected out.
 struct ForceMap {

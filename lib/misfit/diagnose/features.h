@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/data/diagnosis.h"
 #include "misfit/diagnose/score.h"
 
 namespace misfit {
@@ -15,9 +16,6 @@ struct Features {
   std::vector<double> count;   ///< samples under each hat (its weights summed)
   Eigen::MatrixXd f, ahead;    ///< all samples × hats: at the filtered state, and as predicted for the end of the step
 };
-
-/// Seconds of a recording: the only quantity of a map that has a first and a last value.
-inline constexpr const char* time_of_recording = "time";
 
 /// Of recordings of three days and more, whatever they are of: what people do and the sun does recurs every 24 h, and a model without it
 /// blames an input that follows.

@@ -83,8 +83,9 @@ struct OneStep {
 /// estimated from, on average, and loses as much in those held out: a margin, not a probability.
 [[nodiscard]] double least_held_out_gain(int parameters);
 
-/// Gain of the held-out predictive density over an estimate. Where the study holds nothing out, both models are fitted again without the
-/// last quarter of every experiment, and judged on it; the first once for all.
+/// What a refit predicts against an estimate: held-out measurements, by their predictive density, and farther ahead than one sample. Where
+/// the study holds nothing out, both models are fitted again without the last quarter of every experiment, and judged on it; what is of the
+/// estimate is computed once for all.
 class HeldOut {
  public:
   /// Keeps pointers to the estimate and the experiments.

@@ -88,7 +88,7 @@ Figure figure_of_map(const ForceMap& map) {
   const std::vector<double> x = display_levels(map.x, map.quantity_unit);
   Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
   set_edges(half_steps(x), 0.9, samples);
-  if (map.quantity == "time") {  // nothing was recorded before and after
+  if (map.quantity == time_of_recording) {  // nothing was recorded before and after
     for (double& low : samples.lo) low = std::max(low, x.front());
     for (double& high : samples.hi) high = std::min(high, x.back());
   }

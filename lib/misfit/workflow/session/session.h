@@ -108,6 +108,7 @@ struct Session {
 
 /// Where an effect goes without roles: those of its roles for which the system has a default.
 [[nodiscard]] std::map<std::string, std::string> default_place(const Session& session, const std::string& effect);
+
 /// One word for all these.
 [[nodiscard]] std::string digest_of(const StageInputs& inputs);
 /// The reference curves that a study names.
