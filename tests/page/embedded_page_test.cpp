@@ -191,6 +191,38 @@ TEST_F(Embedded, OfShortRecordingsLeavesViewsOutAndThinsNothing) {
       << "else there is no page";
 }
 
+TEST_F(Embedded, OpensWithWhatItsVerdictIsAbout) {
+  Verdict verdict;
+  verdict.sentence = "It is the camera.";
+  page.verdict = &verdict;
+  EXPECT_EQ(all()["answers"]["state?"]["verdict"]["opens"], "where");
+  verdict.kind = VerdictKind::calibration;
+  EXPECT_EQ(all()["answers"]["state?"]["verdict"]["opens"], "calibration");
+}
+
+TEST_F(Embedded, SaysNothingOfACandidateThatItsColumnOfPSays) {
+  Discovery d;
+  for (const char* why : {"not significant: family-wise p = 0.33", "not significant: family-wise p = 0.33, and its gain is 0.1"}) {
+    d.candidates.emplace_back();
+    d.candidates.back().effect = "drag";
+    d.candidates.back().why = why;
+  }
+  std::filesystem::create_directories(folder.path() / "out");
+  write_discovery(folder.path() / "out", d);
+  const json rows = json::parse(candidates_view(page.places.front(), {}))["rows"];
+  EXPECT_TRUE(rows[0]["why"].empty());
+  EXPECT_EQ(rows[1]["why"], d.candidates[1].why);
+}
+
+TEST_F(Embedded, HasItsStyleSheetsInATemplateSinceTheBodyMayHaveNone) {
+  const std::string text = embedded_page(page, room);
+  const std::size_t begin = text.find("<template id=\"explore-styles\">"), end = text.find("</template>", begin);
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_GT(text.find("<style"), begin);
+  EXPECT_LT(text.rfind("</style>"), end);
+  EXPECT_THAT(std::string(embedded_assets().body), Not(HasSubstr("<main"))) << "the document has one";
+}
+
 TEST_F(Embedded, HasOneScriptThatImportsNothingAndFetchesNothing) {
   const std::string script(embedded_assets().script);
   for (const char* word : {"\nimport ", "\nexport ", "fetch(", "XMLHttpRequest", "</script", "https:", "http:"})

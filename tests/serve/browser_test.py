@@ -179,7 +179,7 @@ def keys_in_a_pair_map(page):
     pair.send_keys(Keys.ENTER)
     plot = page.wait(lambda: page.one("#view figure[data-figure*=_and_] .plot"), "a map over two quantities")
     while page.js("return document.activeElement !== arguments[0]", plot):
-        page.driver.switch_to.active_element.send_keys(Keys.TAB)
+        page.driver.switch_to.active_element.send_keys(Keys.SHIFT, Keys.TAB)
 
     def ranges(key):
         plot.send_keys(key)
@@ -222,6 +222,7 @@ def what_is_in_hand_stays(page):
 
 def force_of_the_accepted(page, name):
     """Pointing shows the force that it adds, its button keeps it, another view removes it."""
+    name = name.replace("_", " ")  # as it is read
     words = f"what {name} adds"
     ActionChains(page.driver).move_to_element(page.one("h1")).perform()
     page.wait(lambda: words not in page.text("#force"), "no force while nothing is pointed at")
@@ -317,15 +318,21 @@ def zoom_by_dragging(page):
 
 
 def plots_stand_still_and_are_seen_at_once(page, address):
-    """The first plot is on the first screen, the views are chosen above it where they stand below; a long text of what is marked moves nothing."""
+    """The map is on the first screen, whole and above the motion where both do not stand side by side; a long text of what is marked moves nothing.
+    The page scrolls as one, and every view can be chosen without scrolling aside."""
     places = "return [...document.querySelectorAll('#motion .u-over')].map((o) => o.getBoundingClientRect().top + scrollY)"
-    for width, height in ((1280, 900), (400, 800)):
+    for width, height in ((1280, 900), (800, 900), (400, 900)):
         page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
         page.driver.get("about:blank")
         page.open(address + "#view=where&model=0")
         top = page.wait(lambda: page.js(places), "the motion")[0]
-        assert top < height - 60, (width, top)
-        assert width > 400 or page.js("return document.querySelector('#tabs').getBoundingClientRect().top + scrollY") < top, "the views above it"
+        page.wait(lambda: page.one("#view figure .u-over"), "a map")
+        first, last = page.js("const o = document.querySelector('#view figure .u-over').getBoundingClientRect(); return [o.top + scrollY, o.bottom + scrollY]")
+        assert last < height, (width, last)
+        assert width > 400 or first < top, (first, top)
+        nested = """return ['#time', '#side', '#view', '#tabs', '.list'].filter((name) => {
+            const e = document.querySelector(name); return e.scrollHeight > e.clientHeight + 1 && getComputedStyle(e).overflowY !== 'visible' || e.scrollWidth > e.clientWidth + 1; })"""
+        assert page.js(nested) == [], page.js(nested)
         page.js("[...document.querySelectorAll('[data-map]')].find((b) => b.textContent.includes(' and ')).click()")
         over = page.wait(lambda: page.one("#view figure[data-figure*=_and_] .u-over"), "a map over two quantities")
         page.js("arguments[0].scrollIntoView({block: 'center'})", over)
@@ -348,6 +355,15 @@ def nothing_is_cut_off(page, where):
     page.js("for (const more of document.querySelectorAll('#view details')) more.open = true")
     cut = "return [...document.querySelectorAll('#view .wide, #view p, #view td')].filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent)"
     page.wait(lambda: page.js(cut) == [], f"tables and texts as wide as their place: {where}", 20)
+
+
+def the_end_of_a_long_column_is_reached(page):
+    """Beside a view that is longer the motion stays, with its end in sight."""
+    page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 1280, "height": 600, "deviceScaleFactor": 1, "mobile": False})
+    page.js("scrollTo(0, document.documentElement.scrollHeight)")
+    end = "return document.querySelector('#time').getBoundingClientRect().bottom"
+    page.wait(lambda: 0 < page.js(end) <= 601, "the end of the motion", 20)
+    page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def typed_text_is_kept(page):
@@ -433,6 +449,7 @@ def find_and_add():
         time.sleep(0.3)
         assert not page.driver.find_elements(By.CSS_SELECTOR, "#view > div > p.warning"), page.text("#view")
     plots_stand_still_and_are_seen_at_once(page, server.address)
+    the_end_of_a_long_column_is_reached(page)
     for width in (1280, 800, 400):
         page.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
         page.wait(lambda: page.js("return document.documentElement.scrollWidth") <= width, f"nothing is wider than {width} pixels", 30)
@@ -520,6 +537,9 @@ def settings():
     page.job("done", 1)
     page.view("curves")
     page.click("#settings summary")
+    assert re.search(r"k \[.*\] [\d.]+ ± [\d.]+ .*estimated", page.text("#settings")), page.text("#settings")
+    page.js("const e = document.querySelector('#effect'); e.value = 'cubic_damping'; e.dispatchEvent(new Event('change'))")
+    assert page.text("#formula") == "cubic damping: F = -cubic_damping rate^3", page.text("#formula")
     page.click("[data-parameter=k]")
     page.job("done", 2)
     page.wait(lambda: "done" in page.text("#view .began"), "its end at the button")
@@ -540,6 +560,8 @@ def settings():
     assert re.search(r"validation = \[[\d.]+, [\d.]+\]", read(STUDY)), read(STUDY)
     page.click("#run")
     page.job("done", 4)
+    page.wait(lambda: "held out from " in page.one("#motion .plot").get_attribute("aria-label"), "held-out time is told apart")
+    assert "held out from " in page.one("#force .plot").get_attribute("aria-label"), "in the force, too"
     assert page.js("return document.querySelector('#method').value") == "filter_error"
     page.js("const m = document.querySelector('#method'); m.value = 'output_error'; m.dispatchEvent(new Event('change'))")
     page.click("#fit")
@@ -625,7 +647,7 @@ def kept_force_stays_with_another_method(page):
     page.click("#candidates tr.accepted button.shows")
     page.wait(lambda: "adds" in page.text("#force h3"), "the force of a candidate")
     page.js("const m = document.querySelector('#method'); m.value = 'output_error'; m.dispatchEvent(new Event('change'))")
-    page.wait(lambda: "output_error" in page.one("#motion .plot").get_attribute("aria-label"), "the motion by another method")
+    page.wait(lambda: "output error" in page.one("#motion .plot").get_attribute("aria-label"), "the motion by another method")
     assert "adds" in page.text("#force h3"), page.text("#force")
 
 
@@ -661,14 +683,18 @@ def cells_and_figures_are_as_they_should(page):
           drawn.overlay = [{ ...series([0, 9, null], 'line'), x: [0, 1, 2], sorted: true }];
           drawn.redrawOver();
           const scales = new Map(), [large, small] = [8, 1].map((top) => new figure.Figure(document.body, drawing([0, 1], series([0, top], 'line')), { scales }));
+          const banded = (lo, hi) => ({ ...series(undefined, 'band'), key: 'b', lo, hi });
+          const narrow = new figure.Figure(document.body, drawing([0, 1, 2, 3], series([0, 0.1, 0, 0.1], 'line'), banded([-5, -5, -5, -90], [5, 5, 5, 90])));
           const gap = drawing([0, 1, 2, 9], series([5, 6, null, 8], 'points'));
           setTimeout(() => {
             const { max } = drawn.plots[0].u.scales.y;
             const kept = small.plots[0].u.scales.y.max;
-            for (const one of [drawn, large, small]) one.destroy();
+            const { min: low, max: high } = narrow.plots[0].u.scales.y;
+            for (const one of [drawn, large, small, narrow]) one.destroy();
             done([byCell.at(0), byCell.at(1).intervals, cells.rangeOf([0, 1, 2], 1), cells.rangeOf([0, 1, 2], 2) ?? null, max >= 9, kept >= 8,
                 [1.2, 2, 5, 9.5].map((at) => figure.valueAt(gap, 'measured', at) ?? null),
-                [dom.shownWithSigma(1234567, 2), dom.shownWithSigma(-12345678, 12345), dom.shownPlace(101325.7, 100, 4), dom.shown(-1.5e-7, 2)]]);
+                [dom.shownWithSigma(1234567, 2), dom.shownWithSigma(-12345678, 12345), dom.shownPlace(101325.7, 100, 4), dom.shown(-1.5e-7, 2)],
+                [low <= -5 && high >= 5, low > -20 && high < 20], ['lateral_moment', 'x_px', [['C', 0], ['m', -1], [' of output_error', 0]]].map(dom.spaced)]);
           }, 100);
         })""")
     assert said[0] == {"times": [0, 1, 3, 100, 104], "intervals": [[-0.5, 1.5], [2.5, 100.5], [102.5, 105.5]]}, said[0]
@@ -676,6 +702,8 @@ def cells_and_figures_are_as_they_should(page):
     assert said[2:6] == [1, None, True, True], "a value at an edge is in the range above; a curve over the others is seen whole; one scale is kept"
     assert said[6] == [6, None, None, 8], "no marker of another time"
     assert said[7] == ["1234567.0 ± 2.0", "−1.2346e+7 ± 12000", "101325.7", "−1.5e−7"], said[7]
+    assert said[8] == [True, True], "the axis holds the band, but not where it is much wider than usual"
+    assert said[9] == ["lateral moment", "x_px", [["C", 0], ["m", -1], [" of output error", 0]]], "names as they are read; symbols stay"
 
 
 def numbers_far_from_zero_are_told_apart(page):

@@ -13,7 +13,6 @@
 #include "misfit/page/json_text.h"
 #include "misfit/page/packed.h"
 #include "misfit/page/views.h"
-#include "misfit/show/verdict.h"
 
 namespace misfit::page {
 namespace {
@@ -82,7 +81,7 @@ std::string state_of(const EmbeddedPage& page) {
       R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"verdict":{},"effects":[],"settable":null,"films":[],"camera":{},)"
       R"("job":{{"state":"none","number":0}}}})",
       json_string(page.study), json_words(page.question), models_view(page.places), json_list(warnings),
-      page.verdict != nullptr ? json_of(blocks_of(*page.verdict)) : "null", calibration_of(page.places.front()).has_value());
+      page.verdict != nullptr ? verdict_view(*page.verdict) : "null", calibration_of(page.places.front()).has_value());
 }
 
 std::string study_of(const Place& place) {
@@ -232,8 +231,8 @@ std::string embedded_page(const EmbeddedPage& page, std::size_t most) {
   const std::string answers = of_thinnest_needed(page, in_room);
   if (answers.empty()) return "";
   return fmt::format(
-      "<template id=\"explore\">{}</template>\n<style id=\"explore-style\" media=\"not all\">\n{}</style>\n"
-      "<style>\n{}</style>\n<script type=\"text/plain\" id=\"answers\">{}</script>\n<script type=\"module\">\n{}</script>\n",
+      "<template id=\"explore\">{}</template>\n<template id=\"explore-styles\"><style id=\"explore-style\" media=\"not all\">\n{}</style>\n"
+      "<style>\n{}</style></template>\n<script type=\"text/plain\" id=\"answers\">{}</script>\n<script type=\"module\">\n{}</script>\n",
       assets.body, assets.style, assets.frame, answers, assets.script);
 }
 

@@ -1,10 +1,12 @@
 #include "misfit/page/views.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -12,10 +14,12 @@
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
 #include "misfit/data/curve_coefficient.h"
+#include "misfit/page/held_out.h"
 #include "misfit/page/json_text.h"
 #include "misfit/report/figures.h"
 #include "misfit/report/figures_discovery.h"
 #include "misfit/show/results.h"
+#include "misfit/show/rows.h"
 #include "misfit/show/verdict.h"
 
 namespace misfit::page {
@@ -42,19 +46,47 @@ std::string force_of(const MissingForce& missing) {
                      json_of(report::missing_force_figure(missing, std::nullopt)), quantities_of(missing));
 }
 
-/// `change`: the same before the effect was added; nullptr: there is no such map.
-std::string map_of(const ForceMap& map, const ForceMap* before, const std::string& added) {
-  const std::string change = before != nullptr ? json_of(report::map_change_figure(*before, map, added)) : "null";
-  const std::string p_before = before != nullptr ? json_number(before->p_corrected) : "null";
+/// What is beside the maps of a model: those of the model below it, and which samples are held out.
+struct BesideMaps {
+  const Diagnosis* here;
+  const Diagnosis* below;  ///< nullptr: there is none
+  std::string added;       ///< to the model below
+  std::map<std::string, Times> held_out;
+};
+
+/// "change": with that of the model below; null: it has no such map.
+std::string map_of(const ForceMap& map, const BesideMaps& beside) {
+  const std::vector<double> shares = held_out_shares(map, *beside.here, beside.held_out);
+  const ForceMap* before = beside.below != nullptr ? find_map(*beside.below, map.port, map.quantity) : nullptr;
+  report::Figure figure = report::map_figure(map);
+  tell_held_out(map, shares, figure);
+  std::string change = "null";
+  if (before != nullptr) {
+    report::Figure both = report::map_change_figure(*before, map, beside.added);
+    if (before->x == map.x) tell_held_out(*before, shares, both);
+    change = json_of(both);
+  }
   return fmt::format(R"({{"port":{},"quantity":{},"label":{},"portLabel":{},"p":{},"pBefore":{},"figure":{},"change":{}}})",
                      json_string(map.port), json_string(map.quantity), json_words(map.quantity), json_words(map.port),
-                     json_number(map.p_corrected), p_before, json_of(report::map_figure(map)), change);
+                     json_number(map.p_corrected), before != nullptr ? json_number(before->p_corrected) : "null", json_of(figure), change);
 }
 
-std::string pair_of(const PairMap& map) {
-  return fmt::format(R"({{"port":{},"portLabel":{},"x":{},"y":{},"xLabel":{},"yLabel":{},"p":{},"figure":{}}})", json_string(map.port),
-                     json_words(map.port), json_string(map.quantity_x), json_string(map.quantity_y), json_words(map.quantity_x),
-                     json_words(map.quantity_y), json_number(map.p_corrected), json_of(report::pair_figure(map)));
+/// "before": of the model below; null: it has no such map.
+std::string pair_of(const PairMap& map, const Diagnosis* below) {
+  const PairMap* before = nullptr;
+  for (std::size_t k = 0; below != nullptr && k < below->pairs.size(); ++k) {
+    const PairMap& one = below->pairs[k];
+    if (std::tie(one.port, one.quantity_x, one.quantity_y) == std::tie(map.port, map.quantity_x, map.quantity_y)) before = &one;
+  }
+  return fmt::format(R"({{"port":{},"portLabel":{},"x":{},"y":{},"xLabel":{},"yLabel":{},"p":{},"pBefore":{},"figure":{},"before":{}}})",
+                     json_string(map.port), json_words(map.port), json_string(map.quantity_x), json_string(map.quantity_y),
+                     json_words(map.quantity_x), json_words(map.quantity_y), json_number(map.p_corrected),
+                     before != nullptr ? json_number(before->p_corrected) : "null", json_of(report::pair_figure(map)),
+                     before != nullptr ? json_of(report::pair_figure(*before)) : "null");
+}
+
+std::string json_of(const Times& times) {
+  return list_of(times, [](const auto& part) { return fmt::format("[{},{}]", json_number(part[0]), json_number(part[1])); });
 }
 
 /// Of a method: what another roughness would make of its curves. `drawn`: the curves of the figures.
@@ -84,6 +116,13 @@ std::vector<std::size_t> by_significance(const std::vector<Candidate>& all) {
   return out;
 }
 
+/// Why a candidate was not accepted; empty where the column of its p says it.
+std::string reason_beside_p(const Candidate& c) {
+  const std::string only_p = "not significant: family-wise p = ";
+  const bool said = c.why.starts_with(only_p) && c.why.find_first_not_of("0123456789.e+-", only_p.size()) == std::string::npos;
+  return said ? "" : c.why;
+}
+
 /// What the table of blocks_of(Discovery) has no column for. In its order. `at`: the words of its place, where the effect has several;
 /// `place`: in the discovery.
 std::string row_of(const Candidate& c, std::size_t place, const std::vector<Candidate>& all, const std::vector<std::string>& known) {
@@ -91,8 +130,18 @@ std::string row_of(const Candidate& c, std::size_t place, const std::vector<Cand
   const auto places = std::count_if(all.begin(), all.end(), [&](const Candidate& other) { return other.effect == c.effect; });
   const std::vector<std::string> at = addable && places > 1 ? words_of_place(c) : std::vector<std::string>{};
   return fmt::format(R"({{"effect":{},"name":{},"why":{},"accepted":{},"addable":{},"at":{},"force":{},"candidate":{}}})",
-                     json_string(c.effect), json_string(effect_at(c.effect, c.roles)), json_words(c.why), c.accepted, addable,
+                     json_string(c.effect), json_string(effect_at(c.effect, c.roles)), json_words(reason_beside_p(c)), c.accepted, addable,
                      list_of(at, json_string), !c.added.empty(), place);
+}
+
+/// What the last method that has a result makes of each number: {"method", "values": {name: "1.2 ± 0.1 m"}}; null: there is none.
+std::string estimates_of(const std::vector<Fit>& fits) {
+  const auto last = std::find_if(fits.rbegin(), fits.rend(), [](const Fit& fit) { return fit.usable(); });
+  if (last == fits.rend()) return "null";
+  std::vector<std::string> values;
+  for (const auto& [name, estimate] : last->parameters)
+    values.push_back(fmt::format("{}:{}", json_string(name), json_words(shown(estimate))));
+  return fmt::format(R"({{"method":{},"values":{{{}}}}})", json_string(last->method), fmt::join(values, ","));
 }
 
 /// The curve as a model without the effects of the last rungs has it.
@@ -136,8 +185,8 @@ std::string motion_view(const Place& place, const std::string& method) {
   if (!fit) return R"({"methods":[],"method":0,"channels":[],"blocks":[]})";
   std::vector<std::string> channels;
   for (const ChannelPrediction& c : fit->predictions) {
-    channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"figure":{}}})", json_string(c.experiment),
-                                   json_string(c.channel), json_words(c.channel),
+    channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"heldOut":{},"figure":{}}})", json_string(c.experiment),
+                                   json_string(c.channel), json_words(c.channel), json_of(held_out_times(c)),
                                    json_of(report::motion_figure(fit->method, c, std::nullopt))));
   }
   return fmt::format(R"({{"methods":{},"method":{},"channels":{},"blocks":{}}})", list_of(methods, json_string), asked - methods.begin(),
@@ -147,9 +196,13 @@ std::string motion_view(const Place& place, const std::string& method) {
 std::string where_view(const Place& place, const Place* before) {
   const std::optional<Diagnosis> d = diagnosis_of(place), below = before != nullptr ? diagnosis_of(*before) : std::nullopt;
   if (!d) return "null";
-  const auto map = [&](const ForceMap& m) { return map_of(m, below ? find_map(*below, m.port, m.quantity) : nullptr, place.added); };
+  const std::vector<std::string> methods = fitted_methods(place);
+  const std::optional<Fit> fit = methods.empty() ? std::nullopt : fit_of(place, methods.back());
+  const BesideMaps beside{&*d, below ? &*below : nullptr, place.added, fit ? held_out_times(*fit) : std::map<std::string, Times>{}};
+  const auto map = [&](const ForceMap& m) { return map_of(m, beside); };
+  const auto pair = [&](const PairMap& m) { return pair_of(m, beside.below); };
   return fmt::format(R"({{"blocks":{},"force":{},"maps":{},"pairs":{},"whiteness":[{},{}]}})", json_of(blocks_of(*d)),
-                     list_of(d->missing, force_of), list_of(d->maps, map), list_of(d->pairs, pair_of),
+                     list_of(d->missing, force_of), list_of(d->maps, map), list_of(d->pairs, pair),
                      json_of(report::innovation_figure(d->whiteness)), json_of(report::periodogram_figure(d->whiteness)));
 }
 
@@ -200,7 +253,8 @@ std::string curves_view(const std::vector<Place>& places, std::size_t model, con
   for (const Fit& fit : fits) {
     for (const RoughnessPath& path : fit.roughness) roughness.push_back(roughness_of(fit, path, names));
   }
-  return fmt::format(R"({{"figures":{},"roughness":{},"blocks":{}}})", json_list(figures), json_list(roughness), json_of(blocks_of(fits)));
+  return fmt::format(R"({{"figures":{},"roughness":{},"estimates":{},"blocks":{}}})", json_list(figures), json_list(roughness),
+                     estimates_of(fits), json_of(blocks_of(fits)));
 }
 
 std::string calibration_view(const Place& place) {
@@ -236,6 +290,11 @@ std::string models_view(const std::vector<Place>& places) {
   return list_of(places, [](const Place& p) { return fmt::format(R"({{"id":{},"added":{}}})", p.id, json_string(p.added)); });
 }
 
+std::string verdict_view(const Verdict& verdict) {
+  const bool of_the_camera = verdict.kind == VerdictKind::calibration;
+  return fmt::format(R"({{"opens":"{}","blocks":{}}})", of_the_camera ? "calibration" : "where", json_of(blocks_of(verdict)));
+}
+
 std::string verdict_view(const std::vector<Place>& places, const std::string& study, const std::string& out) {
   const std::vector<Fit> fits = fits_of(places.front());
   if (fits.empty()) return "null";
@@ -247,8 +306,8 @@ std::string verdict_view(const std::vector<Place>& places, const std::string& st
                                  above = effects_added ? diagnosis_of(places.back()) : std::nullopt;
   const std::optional<Discovery> discovery = discovery_of(places.back());
   const auto pointer = [](const auto& result) { return result ? &*result : nullptr; };
-  return json_of(blocks_of(verdict_of(VerdictInput{study, out, &fits, pointer(calibration), pointer(comparison), pointer(diagnosis),
-                                                   pointer(above), pointer(discovery), pointer(ladder)})));
+  return verdict_view(verdict_of(VerdictInput{study, out, &fits, pointer(calibration), pointer(comparison), pointer(diagnosis),
+                                              pointer(above), pointer(discovery), pointer(ladder)}));
 }
 
 }  // namespace misfit::page

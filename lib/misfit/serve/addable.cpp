@@ -21,7 +21,7 @@ bool has_another_place(const std::string& effect, const std::optional<Discovery>
 std::vector<Addable> addable_effects(const Session& session, const std::optional<Discovery>& discovery) {
   std::vector<Addable> out;
   for (const std::string& effect : session.registry.effect_keys()) {
-    out.push_back({effect, ""});
+    out.push_back({effect, session.registry.effect(effect).spec().formula, ""});
     try {
       (void)study_with_effect(session, effect, std::nullopt, session.folder.path());
     } catch (const InputError& error) {
@@ -34,7 +34,8 @@ std::vector<Addable> addable_effects(const Session& session, const std::optional
 std::string json_of(const std::vector<Addable>& effects) {
   std::vector<std::string> out;
   for (const Addable& one : effects)
-    out.push_back(fmt::format(R"({{"effect":{},"refused":{}}})", page::json_string(one.effect), page::json_string(one.refused)));
+    out.push_back(fmt::format(R"({{"effect":{},"formula":{},"refused":{}}})", page::json_string(one.effect), page::json_string(one.formula),
+                              page::json_string(one.refused)));
   return page::json_list(out);
 }
 

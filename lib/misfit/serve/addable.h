@@ -9,9 +9,9 @@
 
 namespace misfit::serve {
 
-/// An effect of the program, and why `misfit add` refuses it for this model; empty: it does not.
+/// An effect of the program, what it adds, and why `misfit add` refuses it for this model; empty: it does not.
 struct Addable {
-  std::string effect, refused;
+  std::string effect, formula, refused;
 };
 
 /// All effects of the program. `session`: of the last rung, opened to read. An effect that does not suit at its default place, or is there

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/error.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
@@ -64,11 +65,11 @@ Settable settable_of(const Session& session) {
   const Model model = provisional_model(request, session.registry);
   Settable out;
   for (const misfit::Parameter& p : model.parameters) {
-    if (p.curve < 0) out.parameters.push_back({p.name, p.unit, p.free});
+    if (p.curve < 0) out.parameters.push_back({p.name, p.unit, p.free, in_display_unit(p.value, p.unit)});
   }
   const auto names = parameter_names(request, session.registry);
   for (const misfit::Curve& c : model.curves) {
-    out.parameters.push_back({c.name, c.unit, model.parameters[c.first].free});
+    out.parameters.push_back({c.name, c.unit, model.parameters[c.first].free, ""});
     out.curves.push_back({c.name, curve_in_study(session.study, names, c.name), roughness_unit(c),
                           c.roughness ? fmt::format("{:.6g}", *c.roughness) : "auto"});
   }
@@ -83,8 +84,8 @@ Settable settable_of(const Session& session) {
 std::string json_of(const Settable& settable) {
   std::vector<std::string> parameters, curves, experiments;
   for (const auto& p : settable.parameters)
-    parameters.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{},"free":{}}})", json_string(p.name), page::json_words(p.name),
-                                     page::json_words(plain_si(p.unit)), p.free));
+    parameters.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{},"free":{},"value":{}}})", json_string(p.name),
+                                     page::json_words(p.name), page::json_words(plain_si(p.unit)), p.free, page::json_words(p.value)));
   for (const auto& c : settable.curves)
     curves.push_back(fmt::format(R"({{"name":{},"label":{},"unit":{},"roughness":{}}})", json_string(c.name), page::json_words(c.name),
                                  page::json_words(c.unit), json_string(c.roughness)));

@@ -12,6 +12,7 @@ struct Settable {
   struct Parameter {
     std::string name, unit;
     bool free = false;
+    std::string value;  ///< where it is fixed: "1.2 m"; empty: of a curve
   };
   struct Curve {
     std::string name, in_study;  ///< in the model; what [curves] of the study calls it

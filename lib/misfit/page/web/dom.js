@@ -23,6 +23,12 @@ export function words(text) {
   return out;
 }
 
+/** A text with the names in it as they are read: "lateral moment" for lateral_moment. Symbols, such as x_px, stay. */
+export function spaced(text) {
+  const read = (piece) => piece.replace(/(?<=[a-z]{2})_(?=[a-z]{2})/g, ' ');
+  return typeof text === 'string' ? read(text) : (text ?? []).map(([piece, place]) => [read(piece), place]);
+}
+
 /** The same, with places where a long name may go on in the next line: before '(' and behind '_' and ':'. */
 export function breakable(text) {
   const out = words(text);

@@ -41,6 +41,7 @@ function explore(on) {
 const page = document.createElement('div');
 page.id = 'page';
 page.append(at('explore').content.cloneNode(true));
+document.head.append(at('explore-styles').content.cloneNode(true));
 const button = (text, on) => {
   const out = document.createElement('button');
   out.textContent = text;

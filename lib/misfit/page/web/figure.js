@@ -1,12 +1,12 @@
 // Draws a figure of the report (lib/misfit/report/figure.h) with uPlot: axes, zoom and cursor are uPlot's, the series are painted here, thinned
 // to what the screen has pixels for (least and largest value of each column).
 import uPlot from '/uPlot.esm.js';
-import { element, plain, shown, shownPlace, shownWithSigma, tick, words } from '/dom.js';
+import { element, plain, shown, shownPlace, shownWithSigma, spaced, tick, words } from '/dom.js';
 
 const darkScreen = matchMedia('(prefers-color-scheme: dark)');
 const onDark = { '#000000': '#e4e7ea', '#8a8a8a': '#8f989f', '#0072b2': '#5fb4ea', '#d55e00': '#ff8c42', '#009e73': '#37c79b', '#cc79a7': '#e39cc4',
   '#e69f00': '#f0b73a', '#56b4e9': '#8fd0f7', '#dcdcdc': '#17191b' };
-const dotsOnDark = { '#000000': '#a3adb6', '#8a8a8a': '#666f77' }; // thousands of dots: as bright as lines they would hide these
+const dotsOnDark = { '#000000': '#b3bdc6', '#8a8a8a': '#626a71' }; // thousands of dots: as bright as lines they would hide these
 
 /** The colour on this screen: those of the report are made for white paper. `kind`: the style of the series. */
 export const colour = (hex, kind = '') => {
@@ -71,6 +71,7 @@ export class TimeGroup {
   constructor() {
     this.plots = new Set();
     this.window = null; // [from, to] of the zoom; null: all
+    this.heldOut = []; // intervals of time [s] that no estimate has seen
     this.marks = []; // intervals of time [s]
     this.onmark = () => {};
     this.onbegun = () => {};
@@ -133,6 +134,17 @@ const spanOf = (numbers) => {
   return out[1] - out[0];
 };
 
+/** Of a band's edge what lies where it is at most twice as wide as usual; null elsewhere. */
+function usualPart(band, edge, begin, end) {
+  const widths = [], step = Math.max(Math.floor((end - begin) / 2000), 1), width = (i) => band.hi[i] - band.lo[i];
+  const known = (i) => band.lo[i] !== null && band.hi[i] !== null;
+  for (let i = begin; i < end; i += step) if (known(i)) widths.push(width(i));
+  const most = 2 * widths.sort((a, b) => a - b)[widths.length >> 1];
+  const out = [];
+  for (let i = begin; i < end; ++i) out.push(known(i) && width(i) <= most ? edge[i] : null);
+  return out;
+}
+
 const withX = { boxes: true, cells: true, x_bars: true };
 
 class Plot {
@@ -155,7 +167,7 @@ class Plot {
     this.node.append(this.legend, this.readout ?? '', this.host);
     for (const [event, live] of [['focus', 'polite'], ['blur', 'off']]) this.host.addEventListener(event, () => this.readout?.setAttribute('aria-live', live));
     if ((last && view.options.xLabel !== false) || panel.beside)
-      this.node.append(element('p', { class: 'xlabel' }, words(panel.beside?.label ?? xLabel), panel.beside ? '' : this.unitText(this.figure.xUnit)));
+      this.node.append(element('p', { class: 'xlabel' }, words(spaced(panel.beside?.label ?? xLabel)), panel.beside ? '' : this.unitText(this.figure.xUnit)));
     (view.row ?? view.node).append(this.node);
     this.make();
   }
@@ -166,9 +178,10 @@ class Plot {
     return out;
   }
   spoken() {
-    const names = this.series.map((s) => plain(s.legend)).filter((name) => name !== '');
-    return `${plain(this.figure.title)}: ${plain(this.panel.label)} [${plain(this.panel.unit)}] against ${plain(this.figure.xLabel)}` +
-      (names.length > 0 ? `; ${names.join(', ')}` : '');
+    const names = this.series.map((s) => plain(spaced(s.legend))).filter((name) => name !== ''), heldOut = this.view.heldOut();
+    return `${plain(spaced(this.figure.title))}: ${plain(spaced(this.panel.label))} [${plain(this.panel.unit)}] against ${plain(spaced(this.figure.xLabel))}` +
+      (names.length > 0 ? `; ${names.join(', ')}` : '') +
+      (heldOut.length > 0 ? `; held out from ${heldOut.map((part) => part.map((t) => shown(t)).join(' to ')).join(' s and from ')} s` : '');
   }
 
   extentOfX() {
@@ -202,8 +215,9 @@ class Plot {
   extentOfY(window) {
     if (this.panel.range) return this.panel.range;
     const out = [Infinity, -Infinity], bands = [Infinity, -Infinity];
-    for (const s of this.series) {
+    for (const s of this.series.filter((one) => !isGap(one))) {
       const [begin, end] = this.placesIn(s, window);
+      if (s.style === 'band') extent([s.lo, s.hi].map((list) => usualPart(s, list, begin, end)), 0, end - begin, out);
       if (s.style === 'band' || s.style === 'pale_band') extent([s.lo, s.hi], begin, end, bands);
       if (s.style === 'error_bars') extent([s.lo, s.hi], begin, end, out);
       if (s.style === 'bars') extent([s.lo, s.hi], begin, end, out);
@@ -211,7 +225,7 @@ class Plot {
       else extent([s.y], begin, end, out);
       if (s.style === 'boxes') extent([[0]], 0, 1, out);
     }
-    // A band may be wide where nothing is known yet: it must not make all else small.
+    // A band may be much wider than usual where nothing is known yet: it must not make all else small.
     const span = out[1] > out[0] ? 0.3 * (out[1] - out[0]) : Infinity;
     extent([[Math.max(bands[0], out[0] - span), Math.min(bands[1], out[1] + span)].map((v) => (Number.isFinite(v) ? v : null))], 0, 2, out);
     if (this.panel.zero) extent([[0]], 0, 1, out);
@@ -223,13 +237,13 @@ class Plot {
   }
 
   makeLegend() {
-    const out = element('div', { class: 'legend' }, element('span', { class: 'axis' }, words(this.panel.label), this.unitText(this.panel.unit)));
+    const out = element('div', { class: 'legend' }, element('span', { class: 'axis' }, words(spaced(this.panel.label)), this.unitText(this.panel.unit)));
     this.values = [];
     for (const s of this.series) {
       if (plain(s.legend) === '') continue;
       const swatch = element('span', { class: 'swatch' });
-      swatch.style.background = colour(s.colour, s.style);
-      if (s.style === 'band' || s.style === 'pale_band') swatch.style.opacity = 0.35;
+      swatch.style.background = isGap(s) ? stripesOf(s) : colour(s.colour, s.style);
+      if ((s.style === 'band' || s.style === 'pale_band') && !isGap(s)) swatch.style.opacity = 0.35;
       if (['points', 'markers', 'error_bars', 'x_bars'].includes(s.style)) {
         swatch.style.width = swatch.style.height = '.5rem';
         swatch.style.borderRadius = '50%';
@@ -239,9 +253,9 @@ class Plot {
         const [dash, gap] = s.style === 'dashed' ? [5, 3] : [2, 2];
         swatch.style.background = `repeating-linear-gradient(90deg, ${colour(s.colour, s.style)} 0 ${dash}px, transparent ${dash}px ${dash + gap}px)`;
       }
-      out.append(element('span', {}, swatch, words(s.legend)));
+      out.append(element('span', {}, swatch, words(spaced(s.legend))));
       if (s.sorted && s.y && s.style !== 'bars')
-        this.values.push({ s, name: plain(s.legend).split(', ±')[0], sigma: this.sigmaOf(s), span: spanOf(s.y) });
+        this.values.push({ s, name: plain(spaced(s.legend)).split(', ±')[0], sigma: this.sigmaOf(s), span: spanOf(s.y) });
       else if (s.style === 'band' && s.sorted && plain(s.legend).startsWith('±')) this.values.push({ s, name: '', sigma: { band: s } });
     }
     if (this.series.some((s) => s.style === 'cells')) out.append(this.scale());
@@ -261,7 +275,7 @@ class Plot {
   /** What stands at a place: "12.35 s · measured 121 · predicted 121.1 ± 1.8 px". */
   words(x) {
     const xUnit = plain(this.figure.xUnit), unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
-    const out = [`${this.view.group ? '' : `${plain(this.figure.xLabel)} `}${shownPlace(x, this.window[1] - this.window[0])}${behind(xUnit)}`];
+    const out = [`${this.view.group ? '' : `${plain(spaced(this.figure.xLabel))} `}${shownPlace(x, this.window[1] - this.window[0])}${behind(xUnit)}`];
     for (const { s, name, sigma, span } of this.values) {
       if (s.x.length === 0) continue;
       const k = nearest(s.x, x), v = s.y?.[k] ?? null, lo = sigma?.band.lo[k] ?? null, hi = sigma?.band.hi[k] ?? null;
@@ -284,7 +298,7 @@ class Plot {
       this.panel.ground ? 'too few samples' : '');
   }
   most() {
-    const out = [0, 3];
+    const out = [0, this.view.options.most ?? 3];
     for (const s of this.series) for (const z of s.z ?? []) if (z !== null) out[1] = Math.max(out[1], Math.abs(z));
     return Math.ceil(out[1]);
   }
@@ -489,6 +503,7 @@ class Plot {
     if (this.panel.ground) {
       hatch(pen, colour(this.panel.ground));
     }
+    paintHeldOut(pen, this.view.heldOut(), this.panel === this.figure.panels[0]);
     if (this.panel.zero) {
       ctx.strokeStyle = style('--soft');
       ctx.lineWidth = pen.ratio;
@@ -501,7 +516,8 @@ class Plot {
       ctx.strokeStyle = ctx.fillStyle = colour(s.colour, s.style);
       ctx.lineWidth = Math.max(s.width * 0.8, 1) * pen.ratio;
       ctx.setLineDash(s.style === 'dashed' ? [7 * pen.ratio, 4 * pen.ratio] : s.style === 'dotted' ? [2 * pen.ratio, 3 * pen.ratio] : []);
-      painters[s.style]?.(pen, s, this);
+      if (isGap(s)) paintGaps(pen, s);
+      else painters[s.style]?.(pen, s, this);
       ctx.setLineDash([]);
       ctx.globalAlpha = 1;
     }
@@ -530,16 +546,51 @@ function paintIntervals(pen, intervals) {
   }
 }
 
-/** Where there is nothing: stripes, which no value has. */
-function hatch({ ctx, left, top, width, height, ratio }, ground) {
+/** Time that no estimate has seen: shaded, with a line where it begins; `named`: says what it is. */
+function paintHeldOut(pen, intervals, named) {
+  const { ctx, ratio } = pen;
+  for (const [from, to] of intervals) {
+    if (to <= pen.x0 || from >= pen.x1) continue;
+    const a = Math.max(pen.X(from), pen.left), b = Math.min(pen.X(to), pen.left + pen.width);
+    ctx.fillStyle = style('--held-out');
+    ctx.fillRect(a, pen.top, b - a, pen.height);
+    ctx.fillStyle = style('--soft');
+    if (from > pen.x0) ctx.fillRect(a, pen.top, ratio, pen.height);
+    ctx.font = `${11 * ratio}px "Segoe UI", Helvetica, Arial, "DejaVu Sans", sans-serif`;
+    [ctx.textAlign, ctx.textBaseline] = ['left', 'alphabetic']; // uPlot leaves those of its axes
+    const text = 'held out';
+    if (named && ctx.measureText(text).width + 6 * ratio < b - a) ctx.fillText(text, a + 4 * ratio, pen.top + 11 * ratio);
+  }
+}
+
+/** Places of a map without an estimate: not a value but a reason, so that it fills the axis. */
+const isGap = (s) => s.style === 'band' && s.key.startsWith('no_estimate');
+const gapsHeldOut = (s) => s.key === 'no_estimate_held_out';
+const stripesOf = (s) => `repeating-linear-gradient(${gapsHeldOut(s) ? 45 : 135}deg, ${style('--held-out')} 0 3px, ${stripes()} 3px 4px)`;
+function paintGaps(pen, s) {
+  for (let i = 0; i + 1 < s.x.length; ++i) {
+    if (s.x[i] === null || s.x[i + 1] === null) continue;
+    const a = Math.max(pen.X(s.x[i]), pen.left), b = Math.min(pen.X(s.x[i + 1]), pen.left + pen.width);
+    if (b <= a) continue;
+    pen.ctx.save();
+    pen.ctx.beginPath();
+    pen.ctx.rect(a, pen.top, b - a, pen.height);
+    pen.ctx.clip();
+    hatch(pen, style('--held-out'), gapsHeldOut(s));
+    pen.ctx.restore();
+  }
+}
+
+/** Where there is nothing: stripes, which no value has; `falling`: from left to right. */
+function hatch({ ctx, left, top, width, height, ratio }, ground, falling = false) {
   ctx.fillStyle = ground;
   ctx.fillRect(left, top, width, height);
   ctx.strokeStyle = stripes();
   ctx.lineWidth = ratio;
   ctx.beginPath();
   for (let x = left - height; x < left + width; x += 7 * ratio) {
-    ctx.moveTo(x, top + height);
-    ctx.lineTo(x + height, top);
+    ctx.moveTo(x, falling ? top : top + height);
+    ctx.lineTo(x + height, falling ? top + height : top);
   }
   ctx.stroke();
 }
@@ -761,7 +812,7 @@ const painters = {
 };
 
 /** A figure in the document. options: group (TimeGroup), height (of panels, in those of the report), title and caption (false: none), onpoint,
-    onleave, onpick, onkeypoint, onzoom; key: its name where others take its place; scales: a Map that they share, so that they have one scale.
+    onleave, onpick, onkeypoint, onzoom; key: its name where others take its place; heldOut: intervals of x that are shaded, without a group; most: at the end of the scale of cells, at least; scales: a Map that they share, so that they have one scale.
     `cells`, `boxes`: what is emphasised, highlight() after a change; mark(): samples; `overlay`: series that are drawn over the others,
     redrawOver() after a change. */
 export class Figure {
@@ -773,7 +824,7 @@ export class Figure {
     this.node = element('figure', { 'data-figure': figure.name });
     parent.append(this.node);
     this.width = this.node.clientWidth;
-    if (options.title !== false) this.node.append(element('h3', {}, words(figure.title)));
+    if (options.title !== false) this.node.append(element('h3', {}, words(spaced(figure.title))));
     this.row = figure.panels.some((p) => p.beside) && this.width >= 520 ? element('div', { class: 'row' }) : null;
     if (this.row) this.node.append(this.row);
     this.marks = figure.panels.find((p) => p.marks.length > 0)?.marks ?? [];
@@ -785,11 +836,15 @@ export class Figure {
       return plot;
     });
     if (shared && !this.group?.window) for (const plot of this.plots) plot.showX(plot.xRange);
-    const caption = element('figcaption', {}, options.caption === false ? '' : words(figure.caption));
+    const caption = element('figcaption', {}, options.caption === false ? '' : words(spaced(figure.caption)));
     for (const note of figure.notes) caption.append(element('span', { class: 'note' }, words(note)));
     if (caption.childNodes.length > 0) this.node.append(caption);
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(this.node);
+  }
+  /** Intervals of time that are shaded; none: x is no time. */
+  heldOut() {
+    return this.options.heldOut ?? this.group?.heldOut ?? [];
   }
   /** Panels above each other have the same x. */
   sharedRange(panels) {

@@ -1,4 +1,5 @@
 // The film of an experiment beside its plots over time.
+import { element } from '/dom.js';
 import { nearest, valueAt } from '/figure.js';
 import { get } from '/server.js';
 
@@ -59,7 +60,7 @@ export class Film {
     at('frame-badge').hidden = !this.marks.some(([from, to]) => from <= this.seen && this.seen <= to);
   }
   draw(frame) {
-    at('frame').src = `data:image/jpeg;base64,${frame.jpeg}`;
+    this.picture().src = `data:image/jpeg;base64,${frame.jpeg}`;
     at('marks').setAttribute('viewBox', `0 0 ${frame.width} ${frame.height}`);
     this.putNodes();
     const said = new Set([`Frame at ${this.timeShown(frame.t)} s`]), size = 0.02 * frame.width;
@@ -72,6 +73,11 @@ export class Film {
       if (predicted) said.add(`blue: predicted by ${this.method}`);
     });
     at('frame-words').textContent = [...said].join(' · ');
+  }
+  /** Where the frame is seen: made when there is one. */
+  picture() {
+    if (!at('frame')) at('marks').before(element('img', { id: 'frame', alt: 'The frame at the time cursor' }));
+    return at('frame');
   }
   /** A circle and a cross for each marker. */
   putNodes() {

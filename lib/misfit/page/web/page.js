@@ -1,5 +1,5 @@
 // The page of `misfit open`: what the run folder holds, linked by one time cursor, one zoom and one selection. It computes no results.
-import { askingButton, blocks, breakable, element, fittedTable, plain, shown, shownPlace, words } from '/dom.js';
+import { askingButton, blocks, breakable, element, fittedTable, plain, shown, shownPlace, spaced, words } from '/dom.js';
 import { PairCells, SamplesByCell, rangeOf } from '/cells.js';
 import { Figure, TimeGroup, lowerBound, nearest, onScreenChange } from '/figure.js';
 import { Film } from '/film.js';
@@ -10,7 +10,7 @@ import { editor } from '/editor.js';
 
 const at = (id) => document.getElementById(id);
 const time = new TimeGroup();
-const oneColumn = matchMedia('(max-width: 62rem)'), phone = matchMedia('(max-width: 34rem)'); // as in page.css
+const phone = matchMedia('(max-width: 34rem)'); // as in page.css
 const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves, parameters'], ['calibration', 'Calibration'],
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
@@ -18,7 +18,7 @@ const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing
 const nothingMarked = { intervals: [], times: [], text: '' };
 
 /** What is shown. The address keeps model and tab, so that a reload finds them again; without them it is the last model, of which the verdict speaks. */
-const here = { state: null, model: 0, tab: 'where', method: null, name: undefined, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, fixed: nothingMarked, late: false, chosen: false,
+const here = { state: null, model: 0, tab: null /* that of the verdict */, method: null, name: undefined, motion: null, where: null, map: null, figures: [], timeFigures: [], force: null, fixed: nothingMarked, late: false, chosen: false,
   added: null, // the candidate whose force stands in the plot: { name, figure, of: the missing force beside it }
   candidate: null, // the name of the one whose button keeps it there
   picked: null, // the cell that stays marked: { map, cells, boxes }
@@ -29,7 +29,7 @@ const here = { state: null, model: 0, tab: 'where', method: null, name: undefine
 function readAddress() {
   const parts = new URLSearchParams(location.hash.slice(1));
   here.model = /^\d+$/.test(parts.get('model') ?? '') ? Number(parts.get('model')) : Infinity;
-  here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : 'where';
+  here.tab = tabs.some(([name]) => name === parts.get('view')) ? parts.get('view') : null;
 }
 function writeAddress() {
   if (document.body.dataset.exploring === 'false') return; // the address is that of a section of report.html
@@ -50,6 +50,7 @@ async function look() {
   const job = state.job, before = here.state?.job;
   const changed = job.number !== before?.number || job.state !== before?.state;
   here.state = state;
+  here.tab ??= state.verdict?.opens ?? 'where';
   showJob(job);
   if (state.version !== version || (changed && before?.state === 'running')) {
     const grown = here.models !== undefined && state.models.length > here.models;
@@ -109,17 +110,18 @@ function showHead() {
   at('tabs').querySelector('[data-view=calibration]').hidden = !here.state.camera && here.tab !== 'calibration';
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
-  showVerdict(verdict ?? []);
+  showVerdict(verdict?.blocks ?? []);
   at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
   at('model').value = here.model;
   addedTo = modelsSeen();
   const chosen = at('effect').value;
   const refused = effects.filter((one) => one.refused !== '');
   at('effect').replaceChildren(element('option', { value: '' }, 'an effect…'),
-    ...effects.filter((one) => one.refused === '').map(({ effect }) => element('option', { value: effect }, effect)),
+    ...effects.filter((one) => one.refused === '').map(({ effect, formula }) => element('option', { value: effect, title: formula }, cut(`${spaced(effect)}: ${formula}`))),
     refused.length === 0 ? '' : element('optgroup', { label: 'Not for this model, at their usual place' },
-      ...refused.map(({ effect, refused: why }) => element('option', { value: effect, disabled: true, title: why }, `${effect}: ${reason(why)}`))));
+      ...refused.map(({ effect, refused: why }) => element('option', { value: effect, disabled: true, title: why }, cut(`${spaced(effect)}: ${reason(why)}`)))));
   if (chosen) at('effect').value = chosen;
+  showFormula();
 }
 
 /** By the effects that were added: what is added or removed is refused where another page has changed them meanwhile. */
@@ -135,10 +137,22 @@ function showVerdict(all) {
 }
 phone.addEventListener('change', () => { if (!phone.matches) at('verdict').querySelector('details')?.setAttribute('open', ''); });
 
-/** What misfit says against an effect, without its name again; the whole sentence is the title. */
+/** What misfit says against an effect, in a reader's words; the whole sentence is the title. */
 function reason(why) {
   const said = why.replace(/^effect '[^']*' (is )?/, '').replace(/^does not suit this model: (effect '[^']*': )?/, '').replace(/ \(.*\)$/, '');
-  return said.length > 70 ? `${said.slice(0, 68)}…` : said;
+  const [, kind, lacks] = /has no (port|quantity) '([^']*)'/.exec(said) ?? [];
+  if (kind === 'port') return `acts on ${spaced(lacks)}, which this model does not have`;
+  if (kind) return `needs to be told its ${spaced(lacks)}: misfit add … --at ${lacks}=NAME`;
+  if (/^role '[^']*' needs \[/.test(said)) return 'acts on another unit than this model has there';
+  return said;
+}
+const cut = (text) => (text.length > 90 ? `${text.slice(0, 88)}…` : text);
+
+/** What the chosen effect adds to the model. */
+function showFormula() {
+  const formula = here.state.effects.find((one) => one.effect === at('effect').value)?.formula;
+  at('formula').hidden = !formula;
+  at('formula').textContent = formula ? `${spaced(at('effect').value)}: ${formula}` : '';
 }
 
 function showJob(job) {
@@ -202,8 +216,13 @@ function takeMotion(motion) {
   at('experiments').hidden = names.length < 2;
   at('experiment').replaceChildren(...names.map((name) => element('option', { value: name }, name)));
   at('experiment').value = here.name;
+  for (const c of motion.channels) heldOut.set(`${here.model} ${c.experiment}`, c.heldOut);
   showTime();
 }
+
+/** Intervals of the experiment that is shown: known from a method that predicts the motion, the same of all. */
+const heldOut = new Map();
+const heldOutHere = () => heldOut.get(`${here.model} ${here.name}`) ?? [];
 
 /** Marks and zoom are of one recording: they do not go with the choice of another one. */
 function chooseExperiment(name) {
@@ -237,6 +256,7 @@ function drawTime() {
   drawnAnew(() => {
     for (const figure of here.timeFigures.splice(0)) figure.destroy();
     here.force = null;
+    time.heldOut = heldOutHere();
     const channels = channelsShown(), options = { group: time, title: false, caption: false, height: channels.length > 1 ? 0.45 : 0.7 };
     at('motion').replaceChildren();
     channels.forEach((c, k) => here.timeFigures.push(new Figure(at('motion'), c.figure, { ...options, key: `motion ${k}`, xLabel: k === channels.length - 1 })));
@@ -265,7 +285,7 @@ function putForce(added) {
   here.added = added;
   here.force = null;
   if (force) {
-    at('force').append(element('h3', {}, added ? `Force that is missing, ± 1 sigma, and (thick) what ${added.name} adds` : 'Force that is missing, ± 1 sigma'));
+    at('force').append(element('h3', {}, added ? `Force that is missing, ± 1 sigma, and (thick) what ${spaced(added.name)} adds` : 'Force that is missing, ± 1 sigma'));
     here.force = new Figure(at('force'), added?.figure ?? force.figure, { group: time, title: false, caption: false, height: 0.5, key: 'force', scales: scalesOf(force) });
     here.timeFigures.push(here.force);
   }
@@ -351,7 +371,15 @@ function folded(summary, content, properties = {}) {
   out.addEventListener('toggle', () => (out.open ? here.open.add(key) : here.open.delete(key)));
   return out;
 }
-const nothing = (parent, text) => parent.append(element('p', { class: 'soft' }, text));
+const nothing = (parent, ...text) => parent.append(element('p', { class: 'soft' }, ...text));
+/** There is no such result: the motion gets the width of the page. In a document, which has no buttons, a command says how it is made. */
+function absent(view, byButton, command) {
+  at('main').dataset.alone = 'yes';
+  if (live) nothing(view, byButton);
+  else nothing(view, byButton.split(': ')[0], ': ', element('code', {}, command));
+}
+/** As commands name the study, in the verdict. */
+const studyNamed = () => /^next: misfit \w+ ('[^']*'|\S+)/.exec((here.state.verdict?.blocks ?? []).map((b) => plain(b.text ?? '')).find((text) => text.startsWith('next: ')) ?? '')?.[1] ?? 'STUDY';
 
 /** Of a quantity that a map is over, in the order of their times; null: this experiment has none. */
 async function samplesOf(quantity) {
@@ -361,18 +389,17 @@ async function samplesOf(quantity) {
 }
 
 async function showWhere(view, where, current) {
-  if (!where) return nothing(view, 'This model is not diagnosed yet. Discover (or misfit diagnose) does it; Run does it only if filter_error is among the methods of the study.');
+  if (!where) return absent(view, 'This model is not diagnosed yet: Discover does it; Run does it only if filter_error is among the methods of the study.', `misfit discover ${studyNamed()}`);
   const conclusions = where.blocks.find((b) => b.kind === 'list');
-  if (conclusions) view.append(blocks([conclusions]));
   const least = (map) => Math.min(map.p ?? 2, map.pBefore ?? 2); // the most significant first, now or before; without a p last
   const all = [...where.maps, ...where.pairs].sort((a, b) => least(a) - least(b));
   const significance = ({ p, pBefore }) => (pBefore < 0.01 && pBefore !== null ? `p = ${shown(pBefore, 2)} before, ${shown(p, 2)} now` : `p = ${shown(p, 2)}`);
   const list = element('div', { class: 'list', role: 'group', 'aria-label': 'Maps of the missing force' });
-  const body = element('div');
-  const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', 'data-map': map.figure.name, onclick: () => show(k) }, words(map.portLabel), ' against ',
-    words(map.label ?? map.xLabel), map.yLabel ? ' and ' : '', map.yLabel ? words(map.yLabel) : '', ' ', element('small', {}, significance(map))));
+  const body = element('div'), below = element('div');
+  const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', 'data-map': map.figure.name, onclick: () => show(k) }, words(spaced(map.portLabel)), ' against ',
+    words(spaced(map.label ?? map.xLabel)), map.yLabel ? ' and ' : '', map.yLabel ? words(spaced(map.yLabel)) : '', ' ', element('small', {}, significance(map))));
   list.append(...buttons);
-  view.append(element('h3', {}, 'Missing force against…'), list, body);
+  view.append(body, conclusions ? blocks([conclusions]) : '', all.length > 1 ? element('h3', {}, 'Missing force against…') : '', all.length > 1 ? list : '', below);
   const tests = element('div'), more = folded('Tests of the residuals', tests);
   more.addEventListener('toggle', () => {
     if (!more.open || tests.hasChildNodes() || !current()) return;
@@ -385,10 +412,13 @@ async function showWhere(view, where, current) {
     const mine = ++turn, still = () => mine === turn && current();
     here.map = all[k].figure.name;
     buttons.forEach((b, n) => b.setAttribute('aria-pressed', n === k));
-    for (const figure of here.figures.splice(0)) if (body.contains(figure.node)) figure.destroy(); else here.figures.push(figure);
+    for (const figure of here.figures.splice(0)) if (body.contains(figure.node) || below.contains(figure.node)) figure.destroy(); else here.figures.push(figure);
     here.samples = null;
+    body.style.minHeight = `${body.offsetHeight}px`; // the list stays where it is until the map stands
     body.replaceChildren();
-    await (where.maps.includes(all[k]) ? showMap : showPair)(body, all[k], still);
+    below.replaceChildren();
+    await (where.maps.includes(all[k]) ? showMap : showPair)(body, all[k], still, below);
+    if (still()) body.style.minHeight = '';
   }
   const before = all.findIndex((map) => map.figure.name === here.map);
   if (all.length > 0) await show(Math.max(before, 0));
@@ -441,7 +471,7 @@ function emphasisePicked(figure, map) {
   figure.highlight();
 }
 
-async function showMap(body, map, current) {
+async function showMap(body, map, current, below) {
   const asked = await Promise.allSettled(map.quantity === 'time' ? [] : [samplesOf(map.quantity)]);
   if (!current()) return;
   const samples = asked[0]?.value ?? null;
@@ -450,7 +480,8 @@ async function showMap(body, map, current) {
   edges.push(places[n - 1] + 0.5 * (places[n - 1] - places[n - 2]));
   const t = samples?.t ?? here.timeFigures.at(-1)?.figure.xs[0] ?? [], values = samples?.values ?? t, unit = plain(map.figure.xUnit);
   const byCell = samples || map.quantity === 'time' ? new SamplesByCell(t, (i) => rangeOf(edges, values[i])) : null;
-  const figure = draw(body, map.change ?? map.figure, { height: 0.8, ...pointing(map, byCell, {
+  const overTime = map.quantity === 'time' && here.where.force.length === 1 ? { heldOut: heldOutHere() } : {};
+  const figure = draw(body, map.change ?? map.figure, { height: 0.8, ...overTime, ...pointing(map, byCell, {
     cellAt: (x) => nearest(places, x),
     emphasised: (k) => ({ cells: [[edges[k], edges[k + 1]]] }),
     said: (k, count) => `Marked: ${count} samples with ${map.quantity} from ${endsShown(edges[k], edges[k + 1])} ${unit}` }) });
@@ -458,7 +489,7 @@ async function showMap(body, map, current) {
   figure.node.append(element('p', { class: 'soft' }, byCell
     ? 'Point at a place: its samples are marked in the motion. A click keeps them marked.' : withoutSamples(asked)));
   if (samples) {
-    here.samples = { t: samples.t, figure: draw(body, samples.figure, { height: 0.7 }) };
+    here.samples = { t: samples.t, figure: draw(below, samples.figure, { height: 0.7 }) };
     markPoints();
   }
 }
@@ -469,9 +500,10 @@ async function showPair(body, map, current) {
   const [first, second] = asked.map((one) => one.value ?? null);
   const timeOf = (name, other) => (name === 'time' && other ? { t: other.t, values: other.t } : null); // a sample's own
   const x = first ?? timeOf(map.x, second), y = second ?? timeOf(map.y, first);
-  const cells = new PairCells(map.figure);
+  const most = Math.max(3, ...[map.figure, map.before].flatMap((f) => f?.panels[0].series[0].z ?? []).map((z) => Math.abs(z ?? 0)));
+  const cells = new PairCells(map.figure), now = { ...map.figure, title: `Now: ${plain(map.figure.title)}` };
   const byCell = x && y ? new SamplesByCell(x.t, (i) => (x.values[i] === null || y.values[i] === null ? undefined : cells.at(x.values[i], y.values[i]))) : null;
-  const figure = draw(body, map.figure, { height: 0.9, ...pointing(map, byCell, {
+  const figure = draw(body, map.before ? now : map.figure, { height: map.before ? 0.6 : 0.9, most, ...pointing(map, byCell, {
     cellAt: (px, py) => cells.at(px, py),
     emphasised: (k) => ({ boxes: [cells.boxes[k]] }),
     said: (k, count) => {
@@ -481,10 +513,11 @@ async function showPair(body, map, current) {
     } }) });
   emphasisePicked(figure, map);
   if (!byCell) figure.node.append(element('p', { class: 'soft' }, withoutSamples(asked)));
+  if (map.before) draw(body, { ...map.before, name: `${map.before.name}_before`, title: `Before ${spaced(here.state.models[here.model].added)}: ${plain(map.before.title)}` }, { height: 0.6, most, caption: false });
 }
 
 function showCandidates(view, found) {
-  if (!found) return nothing(view, 'Nobody has asked yet which effect is missing: Discover ranks them.');
+  if (!found) return absent(view, 'Nobody has asked yet which effect is missing: Discover ranks them.', `misfit discover ${studyNamed()}`);
   const last = here.model === here.state.models.length - 1;
   const begin = found.blocks.findIndex((b) => b.kind !== 'heading' && b.kind !== 'paragraph');
   const lead = found.blocks.slice(0, begin).filter((b) => b.kind === 'paragraph');
@@ -552,7 +585,8 @@ function candidateTable(table, rows, last) {
     const line = element('tr', { class: (row.accepted ? 'accepted ' : '') + 'of-why' + more }, element('td', {}, button),
       ...columns.map((n) => element('td', { class: side(n), 'data-label': heading(n) === 'effect' ? null : heading(n) }, breakable(table.rows[k][n]))));
     if (row.force) added.offer(line, line.children[1], row);
-    body.append(line, element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
+    if (plain(row.why) === '') line.classList.remove('of-why');
+    body.append(line, plain(row.why) === '' ? '' : element('tr', { class: 'why' + more }, element('td'), element('td', { colspan: columns.length }, words(row.why))));
   });
   const all = element('table', { id: 'candidates', class: here.allCandidates && 'all' }, element('thead', {}, head), body);
   const showRest = () => {
@@ -575,13 +609,14 @@ function showCurves(view, curves) {
   view.append(blocks(curves.blocks));
   if (!live) return;
   if (here.model !== 0) nothing(view, "Parameters are fixed and roughness is set with the study's own model (rung 0).");
-  else if (here.state.study.fault === null) view.append(settings());
+  else if (here.state.study.fault === null) view.append(settings(curves.estimates));
 }
 
 /** What of the study's own model is estimated and how; each change is `misfit set`, the results are made anew by Run. */
-function settings() {
+function settings(estimates) {
   const set = (what, name, value) => start(`${what} ${name}`, 'set', { what, name, value });
-  const rows = here.state.settable.parameters.map(({ name, label, unit, free }) => element('tr', {}, element('td', {}, words(label), ' [', words(unit), ']'),
+  const rows = here.state.settable.parameters.map(({ name, label, unit, free, value }) => element('tr', {}, element('td', {}, words(label), ' [', words(unit), ']'),
+    element('td', { class: 'number' }, words(estimates?.values[name] ?? (free ? '' : value))),
     element('td', {}, free ? 'estimated' : 'fixed'), element('td', {}, element('button', { class: 'sets', 'data-parameter': name, 'data-key': `free ${name}`, disabled: !here.idle,
       onclick: () => set('free', name, `${!free}`) }, free ? 'Fix' : 'Estimate'))));
   for (const { name, label, unit, roughness } of here.state.settable.curves) {
@@ -590,22 +625,26 @@ function settings() {
       box.removeAttribute('data-changed');
       set('roughness', name, box.value.trim());
     };
-    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), '], larger: smoother'), element('td', {}, box), element('td', {},
+    rows.push(element('tr', {}, element('td', {}, 'roughness of ', words(label), ' [', words(unit), '], larger: smoother'), element('td', { colspan: 2 }, box), element('td', {},
       element('button', { class: 'sets', 'data-roughness': name, 'data-key': `roughness ${name}`, title: 'auto, or a number of at least 0', disabled: !here.idle,
         onclick: setIt }, 'Set'))));
   }
-  const content = element('div', {}, fittedTable(element('table', {}, element('tbody', {}, ...rows))),
+  const heading = (text, side) => element('th', { scope: 'col', class: side }, text);
+  const head = element('thead', {}, element('tr', {}, heading('parameter'), heading(estimates ? `value ± sigma, by ${spaced(estimates.method)}` : 'value', 'number'), heading('is'), element('td')));
+  const content = element('div', {}, fittedTable(element('table', {}, head, element('tbody', {}, ...rows))),
     element('p', { class: 'soft' }, 'A change is written into the study; Run makes the results anew.'));
   return folded('Fix or estimate a parameter, change a roughness', content, { id: 'settings' });
 }
 
 function showCalibration(view, calibration) {
-  if (!calibration) return nothing(view, 'This study has no calibrated camera.');
-  view.append(blocks(calibration.blocks.filter((b) => b.kind !== 'heading' || b.level !== 1), { figures: (name, parent) => calibration.figures.forEach((f) => draw(parent, f)) }));
+  if (!calibration) return absent(view, 'This study has no calibrated camera: one is declared in its text.', '[camera]');
+  const evidence = here.state.verdict?.opens === 'calibration', [points, residuals] = calibration.figures; // the verdict is about them
+  if (evidence) draw(view, residuals);
+  view.append(blocks(calibration.blocks.filter((b) => b.kind !== 'heading' || b.level !== 1), { figures: (name, parent) => (evidence ? [points] : calibration.figures).forEach((f) => draw(parent, f)) }));
 }
 
 function showLadder(view, ladder) {
-  if (!ladder) return nothing(view, 'The ladder begins when an effect is added: each added effect is a rung.');
+  if (!ladder) return absent(view, 'The ladder begins when an effect is added: each added effect is a rung.', `misfit add ${studyNamed()} EFFECT`);
   const choice = element('div', { class: 'rungs', role: 'group', 'aria-label': 'Rungs' }, ...ladder.rungs.map((rung) => {
     const k = here.state.models.findIndex((m) => m.id === rung.id);
     return element('button', { 'aria-pressed': `${k === here.model}`, 'data-rung': rung.id, disabled: k < 0, onclick: () => choose(k) }, `${rung.id}: ${rung.added === '' ? rung.system : `+ ${rung.added}`}`);
@@ -679,7 +718,6 @@ function showTabs() {
     const on = tab.dataset.view === here.tab;
     tab.setAttribute('aria-selected', on);
     tab.tabIndex = on ? 0 : -1;
-    if (on) at('tabs').scrollLeft = tab.offsetLeft - 0.5 * (at('tabs').clientWidth - tab.offsetWidth); // where they do not all find room
   }
   at('view').setAttribute('aria-labelledby', `tab-${here.tab}`);
 }
@@ -695,6 +733,7 @@ function emptied(view) {
   if (at('view').contains(document.activeElement)) focusedBefore = document.activeElement;
   for (const figure of here.figures.splice(0)) figure.destroy();
   here.samples = null;
+  delete at('main').dataset.alone;
   at('view').replaceChildren(view);
   at('view').dataset.view = here.tab;
   const begun = scrollY;
@@ -771,15 +810,23 @@ function correct() {
   choose(0);
 }
 
-/** In one column the view lies below the motion: it is scrolled to. */
 function showTab(name, focus = false) {
   here.tab = name;
-  showView().then(() => { if (oneColumn.matches && here.tab === name) at('view').scrollIntoView(); }).catch(say);
+  showView().catch(say);
   if (focus) at('tabs').querySelector('[aria-selected=true]').focus();
+}
+
+/** A column that is shorter than the other stays in sight; one that is longer than the screen with its end: the page scrolls as one. */
+function keepInSight() {
+  const place = () => { for (const id of ['time', 'side']) at(id).style.top = `${Math.min(0, innerHeight - at(id).offsetHeight)}px`; };
+  const sizes = new ResizeObserver(place);
+  for (const id of ['time', 'side']) sizes.observe(at(id));
+  addEventListener('resize', place);
 }
 
 function begin() {
   readAddress();
+  keepInSight();
   at('work').hidden = !live;
   at('tabs').replaceChildren(...tabs.map(([name, text]) => element('button', { role: 'tab', 'data-view': name, 'aria-controls': 'view', id: `tab-${name}`, onclick: () => showTab(name) }, text)));
   at('tabs').addEventListener('keydown', (event) => {
@@ -793,7 +840,7 @@ function begin() {
   for (const verb of ['run', 'fit', 'discover']) at(verb).addEventListener('click', () => start(verb, verb));
   at('stop').addEventListener('click', stop);
   at('add').addEventListener('click', () => start('add', 'add', { effect: at('effect').value, models: addedTo }));
-  at('effect').addEventListener('change', () => { at('add').disabled = !here.idle || at('effect').value === ''; });
+  at('effect').addEventListener('change', () => { showFormula(); at('add').disabled = !here.idle || at('effect').value === ''; });
   at('model').addEventListener('change', (event) => choose(Number(event.target.value)));
   at('method').addEventListener('change', (event) => { here.method = event.target.value; showMotion().catch(say); });
   at('experiment').addEventListener('change', (event) => { chooseExperiment(event.target.value); showTime(); showView().catch(say); });

@@ -36,7 +36,7 @@ export function roughnessSlider(paths, figures, parent, { set, idle }) {
     }
     for (const figure of figures) figure.redrawOver();
     const support = between(path.support, mixed), freedom = path.freedom && `; ${path.freedom} effective degrees of freedom`;
-    said.replaceChildren(asFitted ? '' : 'Thick line: ', `roughness λ = ${shown(value(), 3)} `, words(path.unit), asFitted
+    said.replaceChildren(asFitted ? '' : 'Thick line (all others, and the bands, are as fitted): ', `roughness λ = ${shown(value(), 3)} `, words(path.unit), asFitted
       ? ` as fitted, ${path.chosen ? 'chosen from the data' : 'given by the study'}${freedom}`
       : `, ${shown(value() / path.used, 2)} times as fitted; ${support < 0 ? 'less' : 'more'} likely by ${
         shown(Math.abs(support), 2)} (log marginal likelihood). All other unknowns follow (linearised).`);
