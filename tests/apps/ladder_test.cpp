@@ -281,6 +281,35 @@ TEST(AForceOfUnknownForm, BecomesACurveOfItsQuantityBesideWhichWhatItCanTakeOver
   EXPECT_GE(within, 0.8 * points);
 }
 
+/// Dry friction, and a force that no effect of the library is like.
+double friction_and_a_sine_of_the_rate(double w) { return -std::tanh(w / 0.02) + 0.4 * std::sin(12.0 * w); }
+
+TEST(AnEffectBesideWhichSomethingRemains, IsBegunWithAndCalledAPartOfWhatIsMissing) {
+  const OscillatorStudy study;
+  study.record_with(friction_and_a_sine_of_the_rate);
+  const std::string file = study.path("study.toml").string();
+  const Outcome outcome = run({"discover", file, "--auto"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(added(study), (std::vector<std::string>{"", "coulomb_friction", "unknown_force"})) << outcome.out << outcome.err;
+}
+
+/// The force of the recording: 1.5 m/s^2 of dry friction, and 0.8 m/s^2 sin(5 s/m w), beside which it seems to be forced periodically.
+TEST(OfTwoEffectsThatExplainAllBetweenThem, TheOneThatExplainsMoreByItselfIsNamed) {
+  const OscillatorStudy study;
+  study.write("d.csv", content(paths::source() / "tests/apps/records/friction_and_a_sine.csv"));
+  const Outcome outcome = run({"discover", study.path("study.toml").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json found = json::parse(content(study.path("out/candidates.json")));
+  const auto drop_of = [](const json& candidate) {
+    return candidate.at("actual_drop").is_null() ? 0.0 : candidate.at("actual_drop").get<double>();
+  };
+  ASSERT_TRUE(found.at(0).at("accepted").get<bool>()) << outcome.out;
+  EXPECT_EQ(found.at(0).at("effect"), "coulomb_friction");
+  EXPECT_THAT(found.at(0).at("why").get<std::string>(), testing::HasSubstr("periodic_forcing explains what remains"));
+  EXPECT_FALSE(found.at(0).contains("remaining")) << "nothing remains beside both";
+  for (const json& other : found) EXPECT_LE(drop_of(other), drop_of(found.at(0))) << other.at("effect");
+}
+
 TEST(APlaceOfAnEffect, IsTheOneThatIsAskedFor) {
   const OscillatorStudy study;
   study.measure_twice();

@@ -272,6 +272,45 @@ Ladder example_ladder() {
   return ladder;
 }
 
+Candidate imitation(const std::string& effect, double drop, double held_out_gain) {
+  Candidate c;
+  c.effect = effect;
+  c.actual_drop = drop;
+  c.held_out_gain = held_out_gain;
+  c.remaining = "an unknown curve dw/dt(w)";
+  return c;
+}
+
+TEST(CandidateToBeginWith, GainsMostInAllOfThoseBesideWhichSomethingRemains) {
+  Discovery d;
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+  d.candidates = {imitation("cubic_damping", 310.0, 20.0), imitation("coulomb_friction", 300.0, 190.0)};
+  ASSERT_NE(candidate_to_begin_with(d), nullptr);
+  EXPECT_EQ(candidate_to_begin_with(d)->effect, "coulomb_friction") << "345 against 175";
+  d.candidates[1].remaining.reset();  // refused for something else
+  EXPECT_EQ(candidate_to_begin_with(d)->effect, "cubic_damping");
+}
+
+TEST(CandidateToBeginWith, IsNotChosenPastWhatExplainsMoreThanTwiceAsMuch) {
+  Discovery d;
+  d.candidates = {imitation("coulomb_friction", 300.0, 190.0)};
+  Candidate curve;
+  curve.effect = "unknown:dw/dt(w)";
+  curve.family = CandidateFamily::unknown;
+  curve.dof = 8;
+  curve.score = 615.0;
+  d.candidates.push_back(curve);
+  EXPECT_NE(candidate_to_begin_with(d), nullptr) << "599 after its 8 coefficients";
+  d.candidates.back().score = 617.0;
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+  d.candidates.pop_back();
+  Candidate refused;
+  refused.effect = "delay";
+  refused.actual_drop = 601.0;
+  d.candidates.push_back(refused);
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+}
+
 TEST(LadderFile, ReadsBackWhatWasWritten) {
   const TemporaryFolder folder;
   const Ladder ladder = example_ladder();

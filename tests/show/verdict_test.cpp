@@ -300,6 +300,20 @@ TEST(Verdict, WhatPredictsWorseIsNotCalledMissing) {
                     testing::Not(HasSubstr("was missing"))));
 }
 
+TEST(Verdict, WhatLeftALackOfFitIsAPartOfWhatIsMissingUntilNothingIsMissingAnyMore) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs.back().remained = "an unknown curve dw/dt(w)";
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("coulomb_friction explains a part of what is missing: with it")) << "not searched";
+  c.discovery = searched({}, SearchOutcome::unknown_form, "");
+  c.discovery->unexplained_port = "dw/dt";
+  c.discovery->unexplained_quantity = "w";
+  EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("coulomb_friction explains a part of what is missing: with it"),
+                                          HasSubstr("something is still missing that depends on w"), Not(HasSubstr("was missing"))));
+  c.discovery = searched({}, SearchOutcome::none_missing, "");
+  EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("coulomb_friction was missing"), Not(HasSubstr("a part"))));
+}
+
 TEST(Verdict, WhatNoLikelihoodComparesIsNotCalledMissing) {
   Case c;
   c.add_effect();

@@ -46,7 +46,7 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json("rank", c.rank), json("effect", c.effect), json("ports", c.ports), json("score", c.score);
   json("predicted_drop", c.predicted_drop), json("actual_drop", c.actual_drop);
   json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
-  json.if_there("also", c.also);
+  json.if_there("also", c.also), json.if_there("remaining", c.remaining);
   json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters),
       json("family", NameOf(c.family, candidate_family_names));
   json("roles", c.roles), json("dof", c.dof), json("described", c.absorbed), json("force", c.force);
@@ -123,6 +123,21 @@ std::size_t effects_tested(const Discovery& discovery) {
 
 std::size_t curves_tested(const Discovery& discovery) {
   return static_cast<std::size_t>(std::count_if(discovery.candidates.begin(), discovery.candidates.end(), is_tested_curve));
+}
+
+const Candidate* candidate_to_begin_with(const Discovery& discovery) {
+  const auto gain = [](const Candidate& c) { return 0.5 * *c.actual_drop + *c.held_out_gain; };
+  const Candidate* best = nullptr;
+  for (const Candidate& c : discovery.candidates) {
+    if (!c.remaining || !c.actual_drop || !c.held_out_gain) continue;
+    if (best == nullptr || gain(c) > gain(*best)) best = &c;
+  }
+  if (best == nullptr) return nullptr;
+  const double most = 2.0 * *best->actual_drop;
+  const bool past_a_larger_one = std::any_of(discovery.candidates.begin(), discovery.candidates.end(), [&](const Candidate& c) {
+    return is_tested_curve(c) ? c.score - 2.0 * c.dof > most : c.actual_drop && *c.actual_drop > most;
+  });
+  return past_a_larger_one ? nullptr : best;
 }
 
 std::string tested_in_words(const Discovery& discovery) {

@@ -37,6 +37,8 @@ struct Candidate {
   std::optional<double> actual_drop;    ///< after refitting; missing: not refitted
   std::optional<double> held_out_gain;  ///< of the held-out log-likelihood
   std::optional<std::string> also;      ///< other values that explain hardly less, in words
+  /// What is still significant beside it, the only reason against it: "an unknown surface dv/dt(y, u)".
+  std::optional<std::string> remaining;
   double p_value = 1.0;                 ///< corrected for cells scanned and families
   std::vector<std::string> group;       ///< effects that these data cannot distinguish from this one, itself included; empty: alone
   bool absorbed = false;                ///< by the free parameters (1 − R² < 0.01), and not clearly significant: not tested
@@ -107,6 +109,11 @@ struct Discovery {
   std::vector<std::string> sweep_asks;  ///< camera parameters that the calibration sweep asks for and the camera of the study does not have
   double seconds = 0.0;
 };
+
+/// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain of the log-likelihood
+/// on the measurements of the estimation and on those held out. nullptr: there is none, or something explains more than twice as much: a
+/// refitted candidate that is refused, or a curve of unknown form.
+[[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
 
 /// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.
 [[nodiscard]] std::size_t effects_tested(const Discovery& discovery);

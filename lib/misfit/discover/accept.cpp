@@ -174,6 +174,7 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
     e->candidate.why = "lack of fit remains: with it in the model " + left->label() + " is still significant, " + p_equals(left->p_value) +
                        ", a predicted drop of " + format_value(left->result.chi2) + ", beside the effect's own of " +
                        format_value(e->refit->drop);
+    e->candidate.remaining = left->label();
     imitations.push_back({e, *left});
     read.insert(read.end(), candidate_model.quantities.begin(), candidate_model.quantities.end());
   }
@@ -216,13 +217,22 @@ Choice or_a_better_pair(std::vector<RankedCandidate>& ranked, const Choice& choi
   return instead ? Choice{ranked.begin() + (instead->first - ranked.data()), instead->pair} : choice;
 }
 
+/// Of two imitations that are missing together, the one that explains more by itself is chosen.
+Choice larger_of_two(const Place at, const Pair& pair, std::vector<RankedCandidate>& ranked) {
+  const Place second = ranked.begin() + (pair.second - ranked.data());
+  if (!second->candidate.remaining || !(second->refit->drop > at->refit->drop)) return {at, pair};
+  Pair swapped = pair;
+  swapped.second = &*at;
+  return {second, swapped};
+}
+
 /// Step 6: the first imitation whose lack of fit a second effect removes; else the first that gains nothing by itself on what is held out,
 /// but does together with another.
 Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Imitation>& imitations, HeldOut& held_out,
                                   const SearchContext& context) {
   constexpr int most = 3;
   for (const Imitation& imitation : imitations) {
-    if (const auto pair = explaining_effect(*imitation.at, ranked, held_out, context)) return {imitation.at, pair};
+    if (const auto pair = explaining_effect(*imitation.at, ranked, held_out, context)) return larger_of_two(imitation.at, *pair, ranked);
   }
   int tried = 0;
   for (auto e = ranked.begin(); e != ranked.end() && e->refit && tried < most; ++e) {
@@ -237,6 +247,7 @@ Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const st
 void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;
+  c.remaining.reset();  // the second one explains it
   c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
   const FilterEstimate& there = choice.at->refit->estimate;
   if (!there.converged) c.why += "; " + there.message;

@@ -71,14 +71,16 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
   return out;
 }
 
-/// What the likelihood says of what a rung added. Untested: no likelihood compares it with the model before (another system, or a
-/// comparison that was cut off).
-enum class Evidence { needed, predicts_worse, chance, untested };
+/// What the likelihood says of what a rung added. A part: something remained beside it, and still does at the end of the ladder, so that it
+/// may only look like what is missing. Untested: no likelihood compares it with the model before (another system, or a comparison that was
+/// cut off).
+enum class Evidence { needed, a_part, predicts_worse, chance, untested };
 
-Evidence evidence_for(const Rung& rung) {
+Evidence evidence_for(const Rung& rung, bool something_remains) {
   if (!rung.actual_drop) return Evidence::untested;
   if (explains_no_more_than_chance(rung)) return Evidence::chance;
-  return rung.held_out_gain && *rung.held_out_gain < 0.0 ? Evidence::predicts_worse : Evidence::needed;
+  if (rung.held_out_gain && *rung.held_out_gain < 0.0) return Evidence::predicts_worse;
+  return rung.remained && something_remains ? Evidence::a_part : Evidence::needed;
 }
 
 /// Not decided: refits were cut off by a limit of their own, which a longer round does not lift.
@@ -367,8 +369,9 @@ class VerdictBuilder {
   /// What was added: all of it, or that of which the likelihood says so.
   [[nodiscard]] std::vector<std::string> added_names(std::optional<Evidence> of = std::nullopt) const {
     std::vector<std::string> names;
+    const bool remains = in_.discovery == nullptr || in_.discovery->outcome != SearchOutcome::none_missing;
     for (const Rung& rung : in_.ladder->rungs) {
-      if (!rung.added.empty() && (!of || evidence_for(rung) == *of)) names.push_back(added_in_words(rung, *in_.ladder));
+      if (!rung.added.empty() && (!of || evidence_for(rung, remains) == *of)) names.push_back(added_in_words(rung, *in_.ladder));
     }
     return names;
   }
@@ -377,12 +380,13 @@ class VerdictBuilder {
   /// "a was missing: with all that was added the error falls; b was added and explains no more than chance does; ", and what comes behind.
   void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
     const auto needed = added_names(Evidence::needed), untested = added_names(Evidence::untested), chance = added_names(Evidence::chance);
-    const auto worse = added_names(Evidence::predicts_worse);
+    const auto worse = added_names(Evidence::predicts_worse), a_part = added_names(Evidence::a_part);
     std::vector<std::string> parts;
     const auto part = [&](const std::vector<std::string>& names, const char* of_one, const char* of_several) {
       if (!names.empty()) parts.push_back(join_words(names) + (names.size() == 1 ? of_one : of_several));
     };
     part(needed, " was missing", " were missing");
+    part(a_part, " explains a part of what is missing", " explain a part of what is missing");
     part(untested, " was added, and no likelihood compares it with the model before",
          " were added, and no likelihood compares them with the models before");
     part(worse, " was added, and what is held out is predicted worse with it",

@@ -332,6 +332,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from) append_note(rung.note, taken_over_in_words(from->fixed_in_model));
     if (from) rung.roles = from->roles;
     if (from) rung.also = from->also;
+    if (from) rung.remained = from->remaining;
     if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));
     const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.progress_of("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);

@@ -1,4 +1,5 @@
-// discover --auto: rungs are added while something is accepted, and effects that later ones have made needless leave.
+// discover --auto: rungs are added while something is accepted, or explains most of what is missing, and effects that later ones have made
+// needless leave.
 
 #include <fmt/format.h>
 
@@ -75,7 +76,7 @@ class Extension {
       families_ = static_cast<double>(discovery.candidates.size());
       const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
       if (next && has_left(*next)) break;
-      if (next ? !add(*next, alternatives_to(*next, discovery)) : !add_curve(discovery)) break;
+      if (next ? !add(*next, alternatives_to(*next, discovery)) : !begin_with_one(discovery) && !add_curve(discovery)) break;
       while (one_leaves() || one_is_exchanged() || one_is_sharper() || one_is_named()) {
       }
     }
@@ -103,6 +104,14 @@ class Extension {
     return true;
   }
 
+  /// Several things are missing, and none explains so much by itself that nothing remains: a rung for the effect that explains most of it,
+  /// in whose place one of its alternatives may come when the others are there. False: there is none, or it does not do.
+  bool begin_with_one(const Discovery& discovery) {
+    const Candidate* candidate = candidate_to_begin_with(discovery);
+    if (candidate == nullptr || has_left(*candidate)) return false;
+    return add_tentatively(*candidate, alternatives_to(*candidate, discovery));
+  }
+
   /// A force or an error of unknown form becomes a rung as it is: a curve of the quantity that it depends on. What else is missing can then
   /// be found beside it. False: there is none, or it gains nothing.
   bool add_curve(const Discovery& discovery) {
@@ -117,37 +126,40 @@ class Extension {
       return false;  // its knots are too far apart for what is left, or its place is another
     const std::optional<Candidate> curve = predict_effect(ladder_.last(), effect, {roles});
     if (!curve || has_left(*curve)) return false;
+    if (add_tentatively(*curve, {})) return true;
+    ladder_.gained_too_little(effect_at(effect, roles));
+    return false;
+  }
+
+  /// What discovery does not accept as it is. False: it cannot be fitted, or the rung is off again, as why_not_kept says.
+  bool add_tentatively(const Candidate& candidate, std::vector<Candidate> alternatives) {
+    const std::string name = effect_at(candidate.effect, candidate.roles);
     try {
-      if (!add(*curve, {})) {
-        ladder_.gained_too_little(effect_at(effect, roles));
-        return false;
-      }
-    } catch (const InputError& error) {  // what it is a curve of hardly moves in the fit that comes first
-      return cannot_be_added(effect_at(effect, roles), error);
+      if (!add(candidate, std::move(alternatives))) return false;
+    } catch (const InputError& error) {  // what a curve is one of hardly moves in the fit that comes first
+      return cannot_be_added(name, error);
     } catch (const RunError& error) {
       stop_if_interrupted();
-      return cannot_be_added(effect_at(effect, roles), error);
+      return cannot_be_added(name, error);
     }
     const std::string why = why_not_kept(ladder_.ladder().rungs.back());
     if (why.empty()) return true;
-    ladder_.root().note(fmt::format("{}: {}: its rung is taken off", effect_at(effect, roles), why));
+    ladder_.root().note(fmt::format("{}: {}: its rung is taken off", name, why));
     ladder_.remove(std::to_string(ladder_.ladder().rungs.back().id));
-    ladder_.gained_too_little(effect_at(effect, roles));
     added_.pop_back();
     return false;
   }
 
-  bool cannot_be_added(const std::string& curve, const std::exception& error) {
-    ladder_.root().note(curve + " cannot be fitted: " + error.what());
-    ladder_.gained_too_little(curve);
+  bool cannot_be_added(const std::string& name, const std::exception& error) {
+    ladder_.root().note(name + " cannot be fitted: " + error.what());
     return false;
   }
 
-  /// Of the rung of a curve of unknown form; empty: it stays.
+  /// Of a rung that was added tentatively; empty: it stays.
   [[nodiscard]] std::string why_not_kept(const Rung& rung) const {
     const int more = parameters_added(rung);
     if (gains_too_little(rung.actual_drop, rung.held_out_gain, more, families_)) {
-      return fmt::format("gains too little for its {} coefficients (drop {}, held-out gain {})", more,
+      return fmt::format("gains too little for its {} parameters (drop {}, held-out gain {})", more,
                          rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
                          rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown");
     }

@@ -192,7 +192,7 @@ void FilterSearch::iterate_again() {
 void FilterSearch::refine_jointly() {
   constexpr int most_steps = 20, most_axis_steps = 2;
   constexpr double short_step = 8.0, as_promised = 0.2;  // promised gain: of four sigmas of one parameter; share of it
-  constexpr double of_ten_sigmas = 50.0, little = 0.1;   // promised gain; gain, and share of what was promised
+  constexpr double little = 0.1;  // gain, and share of what was promised
   LikelihoodDerivatives exact;
   bool one_sided = false;
   at_kink_ = false;
@@ -209,7 +209,7 @@ void FilterSearch::refine_jointly() {
     const std::optional<double> gained = step_jointly(exact);
     const double promised = *out_.newton_decrement;
     if (promised >= kDecrementOfOneSigma && gained.value_or(0.0) < std::min(little, little * promised)) {
-      if (promised >= of_ten_sigmas || axis_steps++ == most_axis_steps || !step_along_axes()) return;
+      if (axis_steps++ == most_axis_steps || !step_along_axes()) return;
       continue;
     }
     if (!gained) return;
