@@ -220,6 +220,14 @@ TEST(Verdict, ARandomForceThatIsGoneIsSaidNotToBeDistinguishableFrom0) {
   EXPECT_EQ(shown(c.verdict().errors.back()), "20.0 ± 1.0 V/s to 0.09 V/s (not distinguishable from 0)");
 }
 
+TEST(Verdict, ARandomForceThatWasNotSeenBeforeHasNoChangeInPerCent) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs.front().force = {{"dw/dt", {1e-4, 0.0, "V/s"}}};
+  const std::string sentence = c.verdict().sentence;
+  EXPECT_THAT(sentence, HasSubstr("the random force rises from 0.0001 V/s (not distinguishable from 0) to 5.00 ± 0.40 V/s"));
+}
+
 TEST(Verdict, AnErrorOfATrajectoryIsThatOfAFreeRun) {
   Case c;
   c.fits.front().method = "output_error";

@@ -170,6 +170,8 @@ std::string shown(const ErrorChange& e) {
   if (e.within_sigma()) return briefly(e.before) + " to " + briefly(*e.after) + " (within its sigma)";
   if (prints_alike(e)) return briefly(*e.after) + " before and after";
   if (e.kind == ErrorKind::random_force && !e.remark.empty()) return briefly(e.before) + " to " + briefly(*e.after) + remark;
+  if (e.kind == ErrorKind::random_force && !(e.before.sigma > 0.0))
+    return briefly(e.before) + " (" + not_distinguishable(e.before) + ") to " + briefly(*e.after);
   const auto change = e.per_cent();
   return briefly(e.before) + " to " + briefly(*e.after) +
          (change ? fmt::format(" ({:+.{}f} %)", *change, std::abs(*change) < 10.0 || *change < -99.0 ? 1 : 0) : "");
