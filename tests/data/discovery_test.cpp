@@ -278,37 +278,50 @@ Candidate imitation(const std::string& effect, double drop, double held_out_gain
   c.actual_drop = drop;
   c.held_out_gain = held_out_gain;
   c.remaining = "an unknown curve dw/dt(w)";
+  c.ports = {"dw/dt"};
   return c;
 }
 
-TEST(CandidateToBeginWith, GainsMostInAllOfThoseBesideWhichSomethingRemains) {
+Discovery of_unknown_form(std::vector<Candidate> candidates) {
   Discovery d;
-  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
-  d.candidates = {imitation("cubic_damping", 310.0, 20.0), imitation("coulomb_friction", 300.0, 190.0)};
+  d.candidates = std::move(candidates);
+  d.unexplained_port = "dw/dt";
+  return d;
+}
+
+TEST(CandidateToBeginWith, GainsMostInAllOfThoseBesideWhichSomethingRemains) {
+  EXPECT_EQ(candidate_to_begin_with(of_unknown_form({})), nullptr);
+  Discovery d = of_unknown_form({imitation("cubic_damping", 310.0, 20.0), imitation("coulomb_friction", 300.0, 190.0)});
   ASSERT_NE(candidate_to_begin_with(d), nullptr);
-  EXPECT_EQ(candidate_to_begin_with(d)->effect, "coulomb_friction") << "345 against 175";
+  EXPECT_EQ(candidate_to_begin_with(d)->effect, "coulomb_friction") << "340 against 175";
   d.candidates[1].remaining.reset();  // refused for something else
+  ASSERT_NE(candidate_to_begin_with(d), nullptr);
   EXPECT_EQ(candidate_to_begin_with(d)->effect, "cubic_damping");
 }
 
-TEST(CandidateToBeginWith, IsNotChosenPastWhatExplainsMoreThanTwiceAsMuch) {
-  Discovery d;
-  d.candidates = {imitation("coulomb_friction", 300.0, 190.0)};
+TEST(CandidateToBeginWith, ActsWhereTheModelFails) {
+  Discovery d = of_unknown_form({imitation("sensor_lag", 310.0, 20.0)});
+  d.candidates.front().ports = {"y"};
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+}
+
+TEST(CandidateToBeginWith, IsNotChosenPastWhatExplainsMore) {
   Candidate curve;
   curve.effect = "unknown:dw/dt(w)";
   curve.family = CandidateFamily::unknown;
   curve.dof = 8;
-  curve.score = 615.0;
-  d.candidates.push_back(curve);
-  EXPECT_NE(candidate_to_begin_with(d), nullptr) << "599 after its 8 coefficients";
-  d.candidates.back().score = 617.0;
+  curve.score = 315.0;
+  Discovery d = of_unknown_form({imitation("coulomb_friction", 300.0, 190.0), curve});
+  EXPECT_NE(candidate_to_begin_with(d), nullptr) << "299 after its 8 coefficients";
+  d.candidates.back().score = 317.0;
   EXPECT_EQ(candidate_to_begin_with(d), nullptr);
-  d.candidates.pop_back();
   Candidate refused;
   refused.effect = "delay";
-  refused.actual_drop = 601.0;
-  d.candidates.push_back(refused);
-  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+  refused.actual_drop = 599.0;
+  d.candidates.back() = refused;
+  EXPECT_NE(candidate_to_begin_with(d), nullptr);
+  d.candidates.back().actual_drop = 601.0;
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr) << "more than twice as much";
 }
 
 TEST(LadderFile, ReadsBackWhatWasWritten) {

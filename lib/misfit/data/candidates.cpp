@@ -129,13 +129,14 @@ const Candidate* candidate_to_begin_with(const Discovery& discovery) {
   const auto gain = [](const Candidate& c) { return 0.5 * *c.actual_drop + *c.held_out_gain; };
   const Candidate* best = nullptr;
   for (const Candidate& c : discovery.candidates) {
-    if (!c.remaining || !c.actual_drop || !c.held_out_gain) continue;
+    const bool there = std::find(c.ports.begin(), c.ports.end(), discovery.unexplained_port) != c.ports.end();
+    if (!there || !c.remaining || !c.actual_drop || !c.held_out_gain) continue;
     if (best == nullptr || gain(c) > gain(*best)) best = &c;
   }
   if (best == nullptr) return nullptr;
-  const double most = 2.0 * *best->actual_drop;
+  const double drop = *best->actual_drop;
   const bool past_a_larger_one = std::any_of(discovery.candidates.begin(), discovery.candidates.end(), [&](const Candidate& c) {
-    return is_tested_curve(c) ? c.score - 2.0 * c.dof > most : c.actual_drop && *c.actual_drop > most;
+    return is_tested_curve(c) ? c.score - 2.0 * c.dof > drop : c.actual_drop && *c.actual_drop > 2.0 * drop;
   });
   return past_a_larger_one ? nullptr : best;
 }

@@ -111,8 +111,8 @@ struct Discovery {
 };
 
 /// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain of the log-likelihood
-/// on the measurements of the estimation and on those held out. nullptr: there is none, or something explains more than twice as much: a
-/// refitted candidate that is refused, or a curve of unknown form.
+/// on the measurements of the estimation and on those held out, of those that act where the model fails. nullptr: there is none, a curve of
+/// unknown form explains more, or a refitted candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
 
 /// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.
