@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace misfit {
 namespace {
@@ -18,7 +20,7 @@ const RecordedInputs& recorded() {
 
 /// By definition, for numerical integration.
 double value(int input, double t) {
-  const auto& [times, hold, values] = recorded();
+  const auto& [times, hold, values, slopes] = recorded();
   if (t < times.front()) return values.front();
   std::size_t k = 0;
   while (k + 1 < times.size() && times[k + 1] <= t) ++k;
@@ -84,6 +86,91 @@ TEST(LateInput, AtASampleIsBetweenSamplesLinearly) {
   EXPECT_NEAR(straight.by_delay, -12.0, 1e-12);
   EXPECT_EQ(late(1, 1.0, 1.0, 1.0, 3.0).value, 1.0) << "before the record";
   EXPECT_EQ(late(1, 1.0, 1.0, 1.0, 3.0).by_delay, 0.0);
+}
+
+/// Samples of `u` at `times`, band limited.
+template <class Function>
+RecordedInputs band_limited(std::vector<double> times, const Function& u) {
+  RecordedInputs out{std::move(times), {Hold::band_limited}, {}};
+  for (const double t : out.t) out.values.push_back(u(t));
+  set_slopes(out);
+  return out;
+}
+
+std::vector<double> even_times(int samples, double step) {
+  std::vector<double> out;
+  for (int i = 0; i < samples; ++i) out.push_back(step * i);
+  return out;
+}
+
+/// Within the interval after sample k.
+RunningInput within(const RecordedInputs& record, std::size_t k, double share) {
+  InputsAt begin(&record.values[k]), end(&record.values[k + 1]);
+  begin.slopes = &record.slopes[k];
+  end.slopes = &record.slopes[k + 1];
+  return input_within(Hold::band_limited, begin, end, 0, share, record.t[k + 1] - record.t[k]);
+}
+
+TEST(BandLimitedInput, FollowsASineOfNinePointsAPeriodAHundredTimesCloserThanAStraightLine) {
+  constexpr double step = 0.01, rate = 0.7 / step;  // 0.7 rad per sample, as the Silverbox oscillates
+  const RecordedInputs record = band_limited(even_times(101, step), [](double t) { return std::sin(rate * t); });
+  double worst = 0.0, worst_of_rate = 0.0, worst_of_line = 0.0;
+  for (std::size_t k = 40; k < 60; ++k) {
+    for (const double share : {0.25, 0.5, 0.75}) {
+      const double t = record.t[k] + share * step;
+      const RunningInput u = within(record, k, share);
+      worst = std::max(worst, std::abs(u.value - std::sin(rate * t)));
+      worst_of_rate = std::max(worst_of_rate, std::abs(u.rate / rate - std::cos(rate * t)));
+      worst_of_line =
+          std::max(worst_of_line, std::abs(record.values[k] + share * (record.values[k + 1] - record.values[k]) - std::sin(rate * t)));
+    }
+  }
+  EXPECT_GT(worst_of_line, 0.05) << "of a straight line 0.7^2/8";
+  EXPECT_LT(worst, 1e-3) << "of the Hermite cubic 0.7^4/384, and what its slopes are off by";
+  EXPECT_LT(worst_of_rate, 1e-2);
+}
+
+TEST(BandLimitedInput, IsACubicSplineThroughUnevenSamplesWithoutCurvatureAtItsEnds) {
+  const RecordedInputs record = band_limited({0.0, 1.0, 2.5, 3.0, 5.0, 6.0}, [](double t) { return std::sin(2.0 * t); });
+  constexpr double beside = 1e-5;
+  const auto curvature = [&](std::size_t k, double share) {
+    const double h = record.t[k + 1] - record.t[k];
+    return (within(record, k, share + beside).rate - within(record, k, share - beside).rate) / (2.0 * beside * h);
+  };
+  for (std::size_t k = 0; k + 1 < record.t.size(); ++k) {
+    EXPECT_NEAR(within(record, k, 0.0).value, record.values[k], 1e-14);
+    EXPECT_NEAR(within(record, k, 1.0).value, record.values[k + 1], 1e-14);
+    if (k > 0) {
+      EXPECT_NEAR(curvature(k - 1, 1.0), curvature(k, 0.0), 1e-6) << k;
+    }
+  }
+  EXPECT_NEAR(curvature(0, 0.0), 0.0, 1e-6);
+  EXPECT_NEAR(curvature(4, 1.0), 0.0, 1e-6);
+}
+
+TEST(BandLimitedInput, AsItWasEarlierHasTheMeanAndTheFirstMomentOfTheSpline) {
+  const RecordedInputs record = band_limited(even_times(40, 0.5), [](double t) { return std::cos(1.3 * t); });
+  constexpr double from = 10.0, to = 10.5, delay = 0.7, middle = 0.5 * (from + to);
+  constexpr int parts = 20000;
+  double mean = 0.0, moment = 0.0;
+  for (int i = 0; i < parts; ++i) {
+    const double t = from + (i + 0.5) * (to - from) / parts - delay;
+    const auto k = static_cast<std::size_t>(t / 0.5);
+    const double u = within(record, k, (t - record.t[k]) / 0.5).value / parts;
+    mean += u;
+    moment += (t + delay - middle) * u * (to - from);
+  }
+  const InputsAt run{nullptr, &record, from, to};
+  const double slope = (late_input(run, 0, to, delay).value - late_input(run, 0, from, delay).value) / (to - from);
+  EXPECT_NEAR(late_input(run, 0, middle, delay).value, mean, 1e-8);
+  EXPECT_NEAR(slope * std::pow(to - from, 3) / 12.0, moment, 1e-8);
+}
+
+TEST(BandLimitedInput, BetweenInstantsOfUnknownSlopeIsAStraightLine) {
+  const std::array<double, 1> begin = {1.0}, end = {3.0};
+  EXPECT_DOUBLE_EQ(input_within(Hold::band_limited, begin.data(), end.data(), 0, 0.25, 2.0).value, 1.5);
+  EXPECT_DOUBLE_EQ(input_within(Hold::band_limited, begin.data(), end.data(), 0, 0.25, 2.0).rate, 1.0);
+  EXPECT_DOUBLE_EQ(input_within(Hold::zero_order, begin.data(), end.data(), 0, 0.25, 2.0).value, 1.0);
 }
 
 TEST(LateInput, WithoutARecordIsWhatItIs) {

@@ -197,7 +197,7 @@ void note_half_a_sample(Refit& out) {
     const auto sigma = standard_error_of(model, out.estimate.covariance, late.parameter);
     const double seconds = late.sign * model.parameters[late.parameter].value;
     if (!sigma) continue;
-    const bool of_line = input.hold == Hold::first_order;  // and should be held, which makes it late
+    const bool of_line = input.hold != Hold::zero_order;  // and should be held, which makes it late
     for (const FilterData& data : out.estimate.data) {
       const double half_step = 0.5 * usual_step(data.signals->t), off = std::abs(seconds - (of_line ? half_step : -half_step));
       if (*sigma > sharp * half_step || off > std::max(sigmas * *sigma, close * half_step)) continue;

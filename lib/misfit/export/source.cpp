@@ -18,7 +18,9 @@ namespace {
 std::string in_unit(const std::string& name, const std::string& unit) { return fmt::format("{} [{}]", shown(name), shown(plain_si(unit))); }
 
 std::string held(const InputSpec& input) {
-  std::string out = input.hold == Hold::zero_order ? "; held between samples" : "; straight between samples";
+  std::string out = input.hold == Hold::zero_order     ? "; held between samples"
+                    : input.hold == Hold::band_limited ? "; a cubic spline between samples"
+                                                       : "; straight between samples";
   if (input.delay > 0.0) out += fmt::format("; as recorded {} s earlier", number_text(input.delay));
   return out;
 }

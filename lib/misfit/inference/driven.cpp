@@ -87,7 +87,7 @@ Signals with_more_noise(const SystemSpec& system, const Signals& signals) {
   };
   for (Signal& channel : out.measured) add(channel);
   for (std::size_t k = 0; k < out.inputs.size(); ++k) {
-    if (system.inputs[k].hold == Hold::first_order) add(out.inputs[k]);
+    if (system.inputs[k].hold != Hold::zero_order) add(out.inputs[k]);
   }
   return out;
 }

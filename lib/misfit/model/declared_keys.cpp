@@ -61,8 +61,9 @@ std::vector<KeyGroup> state_groups() {
 KeyGroup input_group() {
   return {"inputs.NAME", "A measured input.",
      {unit_key(),
-      {.name = "hold", .type = Type::choice, .fallback = "\"first_order\"", .choices = {"zero_order", "first_order"},
-       .meaning = "Between samples: constant, or a straight line."},
+      {.name = "hold", .type = Type::choice, .fallback = "\"first_order\"", .choices = {"zero_order", "first_order", "band_limited"},
+       .meaning = "Between samples: constant, a straight line, or a smooth curve through them (cubic spline), as of a signal without content "
+                  "near half the sampling rate."},
       {.name = "delay", .type = Type::number, .unit = "s", .fallback = "0", .least = 0.0,
        .meaning = "Known dead time; one to be estimated is the effect delay."},
       doc_key()}};

@@ -141,7 +141,8 @@ class Reader {
     input.name = name;
     input.unit = unit_of(s);
     input.doc = *s.text("doc");
-    if (*s.choice("hold") == "zero_order") input.hold = Hold::zero_order;
+    const std::string hold = *s.choice("hold");
+    input.hold = hold == "zero_order" ? Hold::zero_order : hold == "band_limited" ? Hold::band_limited : Hold::first_order;
     input.delay = *s.value("delay");
     out_.spec.inputs.push_back(input);
   }

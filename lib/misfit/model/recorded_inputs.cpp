@@ -1,8 +1,11 @@
 #include "misfit/model/recorded_inputs.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace misfit {
 namespace {
@@ -12,10 +15,46 @@ struct Line {
   double value = 0.0, slope = 0.0;
 };
 
+/// A cubic from one sample to the next by values and slopes of both (Hermite), at a share of the way.
+RunningInput cubic_between(const Line& from, const Line& to, double share, double length) {
+  const double rest = 1.0 - share, chord = (to.value - from.value) / length;
+  const double bend_from = from.slope - chord, bend_to = to.slope - chord;  // beside the straight line
+  return {from.value + share * (to.value - from.value) + share * rest * length * (rest * bend_from - share * bend_to),
+          chord + rest * (1.0 - 3.0 * share) * bend_from - share * (2.0 - 3.0 * share) * bend_to};
+}
+
+/// Slopes at the samples of the cubic spline through them: slopes that make the curvature continuous are the solution of a tridiagonal
+/// system, by elimination from the first to the last and back.
+Eigen::VectorXd slopes_of_spline(const std::vector<double>& t, const Eigen::VectorXd& u) {
+  const Eigen::Index n = u.size();
+  Eigen::VectorXd slopes = Eigen::VectorXd::Zero(n), above = slopes;
+  if (n < 2) return slopes;
+  double before = 0.0, chord_before = 0.0;  // of the interval before sample k: 1/length, and the slope of its straight line
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double after = k + 1 < n ? 1.0 / (t[k + 1] - t[k]) : 0.0;
+    const double chord = k + 1 < n ? after * (u[k + 1] - u[k]) : 0.0;
+    double diagonal = 2.0 * (before + after), right = 3.0 * (before * chord_before + after * chord);
+    if (k > 0) {
+      diagonal -= before * above[k - 1];
+      right -= before * slopes[k - 1];
+    }
+    above[k] = after / diagonal;
+    slopes[k] = right / diagonal;
+    before = after;
+    chord_before = chord;
+  }
+  for (Eigen::Index k = n - 2; k >= 0; --k) slopes[k] -= above[k] * slopes[k + 1];
+  return slopes;
+}
+
 /// One input of a record as a function of time.
 class InputInTime {
  public:
-  InputInTime(const RecordedInputs& record, int input) : record_(record), input_(input), held_(record.hold[input] == Hold::zero_order) {}
+  InputInTime(const RecordedInputs& record, int input)
+      : record_(record),
+        input_(input),
+        held_(record.hold[input] == Hold::zero_order),
+        bends_(record.hold[input] == Hold::band_limited && !record.slopes.empty()) {}
 
   /// Last sample not after `time`, the first one before the record.
   [[nodiscard]] std::size_t sample_at(double time) const { return std::max<std::size_t>(samples_until(time), 1) - 1; }
@@ -25,17 +64,22 @@ class InputInTime {
     return next == record_.t.size() ? std::numeric_limits<double>::infinity() : record_.t[next];
   }
 
-  /// Value and slope between samples k and k + 1, as a straight line or held.
+  /// Value and slope between samples k and k + 1: held, as a straight line, or as a band limited input runs.
   [[nodiscard]] Line between(std::size_t k, double time, bool held) const {
     const double value = record_.value(k, input_);
     if (held || k + 1 >= record_.t.size() || time <= record_.t[k]) return {value, 0.0};
+    if (bends_) {
+      const double length = record_.t[k + 1] - record_.t[k];
+      const RunningInput u = cubic_between(sample(k), sample(k + 1), (time - record_.t[k]) / length, length);
+      return {u.value, u.rate};
+    }
     const double slope = (record_.value(k + 1, input_) - value) / (record_.t[k + 1] - record_.t[k]);
     return {value + slope * (time - record_.t[k]), slope};
   }
   [[nodiscard]] double at(double time) const { return between(sample_at(time), time, held_).value; }
   [[nodiscard]] Line linearly(double time) const { return between(sample_at(time), time, false); }
 
-  /// ∫ u dt and ∫ (t − middle) u dt from `begin` to `end`, where u is a straight line between its samples.
+  /// ∫ u dt and ∫ (t − middle) u dt from `begin` to `end`.
   struct Moments {
     double zeroth = 0.0, first = 0.0;
   };
@@ -43,17 +87,39 @@ class InputInTime {
     const double middle = 0.5 * (begin + end);
     Moments out;
     for (double from = begin; from < end;) {
-      // The straight line up to the next sample, about its own middle.
-      const double to = std::min(end, next_sample_after(from)), m = 0.5 * (from + to), length = to - from;
-      const Line line = between(sample_at(m), m, held_);
-      out.zeroth += length * line.value;
-      out.first += length * ((m - middle) * line.value + length * length * line.slope / 12.0);
+      const double to = std::min(end, next_sample_after(from));
+      const Moments part = bends_ ? of_cubic(from, to, middle) : of_line(from, to, middle);
+      out.zeroth += part.zeroth;
+      out.first += part.first;
       from = to;
     }
     return out;
   }
 
  private:
+  /// Within an interval between two samples: the straight line about its own middle.
+  [[nodiscard]] Moments of_line(double from, double to, double middle) const {
+    const double m = 0.5 * (from + to), length = to - from;
+    const Line line = between(sample_at(m), m, held_);
+    return {length * line.value, length * ((m - middle) * line.value + length * length * line.slope / 12.0)};
+  }
+  /// By Gauss's rule of three points (Abramowitz and Stegun, Handbook (1964), table 25.4), exact for a cubic.
+  [[nodiscard]] Moments of_cubic(double from, double to, double middle) const {
+    constexpr std::array<std::pair<double, double>, 3> points = {
+        {{-0.7745966692414834, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {0.7745966692414834, 5.0 / 9.0}}};
+    const double m = 0.5 * (from + to), half = 0.5 * (to - from);
+    const std::size_t k = sample_at(m);
+    Moments out;
+    for (const auto& [at, weight] : points) {
+      const double time = m + half * at, part = half * weight * between(k, time, false).value;
+      out.zeroth += part;
+      out.first += (time - middle) * part;
+    }
+    return out;
+  }
+
+  [[nodiscard]] Line sample(std::size_t k) const { return {record_.value(k, input_), record_.slopes[k * record_.stride() + input_]}; }
+
   /// How many samples are not after `time`. In an evenly sampled record they are known by their number.
   [[nodiscard]] std::size_t samples_until(double time) const {
     const auto& t = record_.t;
@@ -69,10 +135,30 @@ class InputInTime {
 
   const RecordedInputs& record_;
   int input_;
-  bool held_;
+  bool held_, bends_;
 };
 
 }  // namespace
+
+void set_slopes(RecordedInputs& record) {
+  const bool any = std::find(record.hold.begin(), record.hold.end(), Hold::band_limited) != record.hold.end();
+  record.slopes.assign(any ? record.values.size() : 0, 0.0);
+  for (std::size_t k = 0; k < record.hold.size(); ++k) {
+    if (record.hold[k] != Hold::band_limited) continue;
+    Eigen::VectorXd u(record.t.size());
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = record.value(i, static_cast<int>(k));
+    const Eigen::VectorXd slopes = slopes_of_spline(record.t, u);
+    for (Eigen::Index i = 0; i < u.size(); ++i) record.slopes[i * record.stride() + k] = slopes[i];
+  }
+}
+
+RunningInput input_within(Hold hold, const InputsAt& begin, const InputsAt& end, int i, double share, double length) {
+  if (hold == Hold::zero_order) return {begin.values[i], 0.0};
+  if (hold == Hold::band_limited && begin.slopes != nullptr && end.slopes != nullptr)
+    return cubic_between({begin.values[i], begin.slopes[i]}, {end.values[i], end.slopes[i]}, share, length);
+  const double change = end.values[i] - begin.values[i];
+  return {begin.values[i] + share * change, change / length};
+}
 
 LateInput late_input(const InputsAt& inputs, int input, double t, double delay) {
   if (inputs.record == nullptr) return {inputs.values[input], 0.0};

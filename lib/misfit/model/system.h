@@ -30,7 +30,10 @@ struct StateSpec {
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
 };
 
-enum class Hold { zero_order, first_order };  ///< how an input runs between its samples
+/// How an input runs between its samples: constant, as a straight line, or as a cubic spline through all of them, close to the signal
+/// without content above half the sampling rate that has these samples (Ljung, System Identification (1999), 13.3; Ljung's toolbox: 'zoh',
+/// 'foh', 'bl').
+enum class Hold { zero_order, first_order, band_limited };
 struct InputSpec {
   std::string name, unit, doc;
   Hold hold = Hold::first_order;

@@ -9,12 +9,11 @@
 namespace misfit {
 namespace {
 
-/// Inputs within an interval: held or straight, as each input's Hold says.
+/// Inputs within an interval, as each input's Hold says.
 void inputs_at(const Model& model, const Interval& within, double fraction, double* u) {
   const auto& specs = model.system->spec().inputs;
-  for (std::size_t i = 0; i < specs.size(); ++i)
-    u[i] = specs[i].hold == Hold::zero_order ? within.u0.values[i]
-                                             : within.u0.values[i] + fraction * (within.u1.values[i] - within.u0.values[i]);
+  for (int i = 0; i < std::ssize(specs); ++i)
+    u[i] = input_within(specs[i].hold, within.u0, within.u1, i, fraction, within.t1 - within.t0).value;
 }
 
 /// One realisation in progress.

@@ -10,11 +10,9 @@ namespace {
 /// Inputs at a time within interval k, between samples k and k + 1, as each is held there.
 void inputs_within(const Simulation& run, std::size_t k, double t, double* u) {
   const auto& [stepper, signals, inputs] = run;
-  const double share = (t - signals.t[k]) / (signals.t[k + 1] - signals.t[k]);
-  const double* before = inputs.at(k).values;
-  const double* after = inputs.at(k + 1).values;
-  for (std::size_t j = 0; j < inputs.recorded.hold.size(); ++j)
-    u[j] = inputs.recorded.hold[j] == Hold::zero_order ? before[j] : before[j] + share * (after[j] - before[j]);
+  const double length = signals.t[k + 1] - signals.t[k], share = (t - signals.t[k]) / length;
+  for (int j = 0; j < std::ssize(inputs.recorded.hold); ++j)
+    u[j] = input_within(inputs.recorded.hold[j], inputs.at(k), inputs.at(k + 1), j, share, length).value;
 }
 
 /// The inputs at the time that was reached, and how fast they run in the interval on the way there: not at all where they are held, or
@@ -27,14 +25,13 @@ struct Reached {
   }
 };
 
-/// Into `reached`, those of interval k.
-void note_rates(const Simulation& run, std::size_t k, Reached& reached) {
+/// Into `reached`, those of interval k at time `t`.
+void note_rates(const Simulation& run, std::size_t k, double t, Reached& reached) {
   const auto& [stepper, signals, inputs] = run;
   reached.length = signals.t[k + 1] - signals.t[k];
-  for (std::size_t j = 0; j < inputs.recorded.hold.size(); ++j) {
-    const bool held = inputs.recorded.hold[j] == Hold::zero_order;
-    reached.rate[j] = held ? 0.0 : (inputs.at(k + 1).values[j] - inputs.at(k).values[j]) / reached.length;
-  }
+  const double share = (t - signals.t[k]) / reached.length;
+  for (int j = 0; j < std::ssize(inputs.recorded.hold); ++j)
+    reached.rate[j] = input_within(inputs.recorded.hold[j], inputs.at(k), inputs.at(k + 1), j, share, reached.length).rate;
 }
 
 /// step(interval) for each piece of the way from sample i to the time `shift` after or before it. Before the first and after the last
@@ -46,7 +43,7 @@ bool along(const Simulation& run, std::size_t i, double shift, Reached& reached,
   const std::size_t count = inputs.recorded.hold.size();
   std::copy_n(inputs.at(i).values, count, reached.u.begin());
   reached.t = signals.t[i];
-  if (i + 1 < signals.samples()) note_rates(run, i, reached);
+  if (i + 1 < signals.samples()) note_rates(run, i, reached.t, reached);
   const double end = reached.t + shift;
   for (std::size_t k = i; reached.t != end;) {
     const bool forward = end > reached.t;
@@ -63,7 +60,7 @@ bool along(const Simulation& run, std::size_t i, double shift, Reached& reached,
     const double to = forward ? std::min(end, signals.t[of + 1]) : std::max(end, signals.t[of]);
     inputs_within(run, of, reached.t, begin.data());
     inputs_within(run, of, to, reached.u.data());
-    note_rates(run, of, reached);
+    note_rates(run, of, to, reached);
     const InputsAt from{begin.data(), &inputs.recorded}, at{reached.u.data(), &inputs.recorded};
     if (!step({reached.t, to, from, at, inputs.plan.of(of), inputs.plan.rate_at(of)})) return false;
     reached.t = to;

@@ -27,7 +27,7 @@ Eigen::Map<Block> block(double* at) { return Eigen::Map<Block>(at); }
 }  // namespace
 
 Stepper::Stepper(const Model& model) : evaluator_(model), n_(model.states()), nu_(model.inputs()) {
-  for (const auto& input : model.system->spec().inputs) zero_order_.push_back(input.hold == Hold::zero_order);
+  for (const auto& input : model.system->spec().inputs) holds_.push_back(input.hold);
   const auto& states = model.system->spec().states;
   for (int i = 0; i < int_size(states); ++i) {
     if (std::isfinite(states[i].lower) || std::isfinite(states[i].upper)) ranges_.push_back({i, states[i].lower, states[i].upper});
@@ -109,11 +109,7 @@ int Stepper::pieces_of(const Interval& interval, double from, const StepPart& pa
 }
 
 InputsAt Stepper::inputs_at(const Interval& interval, double fraction, double* u) const {
-  const double *begin = interval.u0.values, *end = interval.u1.values;
-  for (int i = 0; i < nu_; ++i) {
-    const bool held = zero_order_[i];
-    u[i] = held ? begin[i] : begin[i] + fraction * (end[i] - begin[i]);
-  }
+  for (int i = 0; i < nu_; ++i) u[i] = input_within(holds_[i], interval.u0, interval.u1, i, fraction, interval.t1 - interval.t0).value;
   return {u, interval.u0.record, interval.t0, interval.t1};
 }
 

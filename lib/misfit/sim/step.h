@@ -103,7 +103,7 @@ class Stepper {
   std::vector<Range> ranges_;  ///< states that cannot leave them
   std::string failure_;
   double fastest_rate_ = 0.0, excess_ = 0.0;  ///< at the start of the trajectory; beyond that of the plan [1/s]
-  std::vector<bool> zero_order_;
+  std::vector<Hold> holds_;
   std::vector<double> L_, X_, Y_, sum_;  // rows of kRowStride
 };
 

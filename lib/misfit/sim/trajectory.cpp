@@ -134,6 +134,7 @@ InputTable input_table(const Signals& signals, const Model& model) {
     if (signals.inputs[k].values.size() != signals.samples()) continue;  // an input nobody needs
     for (std::size_t i = 0; i < signals.samples(); ++i) recorded.values[i * stride + k] = signals.inputs[k].values[i];
   }
+  set_slopes(recorded);
   return {std::move(recorded), {}};
 }
 

@@ -14,7 +14,12 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 struct InputTable {
   RecordedInputs recorded;
   IntegrationPlan plan = {};  ///< none: parts as the fastest rate at the start of a trajectory asks (planner.h makes one)
-  [[nodiscard]] InputsAt at(std::size_t sample) const { return {recorded.values.data() + sample * recorded.stride(), &recorded}; }
+  [[nodiscard]] InputsAt at(std::size_t sample) const {
+    const std::size_t row = sample * recorded.stride();
+    InputsAt out{recorded.values.data() + row, &recorded};
+    if (!recorded.slopes.empty()) out.slopes = recorded.slopes.data() + row;
+    return out;
+  }
 };
 [[nodiscard]] InputTable input_table(const Signals& signals, const Model& model);
 

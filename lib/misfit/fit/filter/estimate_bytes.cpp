@@ -50,8 +50,8 @@ void fields(Bytes& bytes, MaybeConst<IntegrationPlan> auto& data) {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<RecordedInputs> auto& data) {
-  auto& [t, hold, values] = data;
-  bytes(t, hold, values);
+  auto& [t, hold, values, slopes] = data;
+  bytes(t, hold, values, slopes);
 }
 
 template <class Bytes>
