@@ -187,15 +187,10 @@ class Search {
     }});
   }
 
-  /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum, and one of a sawtooth that the
-  /// prediction is off by less of what a rounding does, which the measurements themselves show.
+  /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum.
   void refit_the_significant_with_shapes() {
-    refit_wave({.begin =
-                    [this](const RankedCandidate& e) {
-                      const bool rounds = measurements_are_rounded(e.screening->candidate_model->model, experiments_);
-                      return significant(e) && (has_shapes(e) || rounds) ? e.screening : nullptr;
-                    },
-                .name = "_shapes"});
+    refit_wave(
+        {.begin = [this](const RankedCandidate& e) { return significant(e) && has_shapes(e) ? e.screening : nullptr; }, .name = "_shapes"});
   }
 
   /// The forces that explain most of the free run, each at least a fifth of it, begun from there: down to the first that one step ahead has

@@ -211,39 +211,19 @@ std::optional<std::string> edge_not_visited(const FilterEstimate& estimate) {
   return std::nullopt;
 }
 
-namespace {
-
-constexpr double share_of_step = 0.05;
-
-/// The parameter that is the step in which the model's last effect rounds its output; nullptr: it is no such effect.
-const Parameter* step_of_rounding(const Model& model) {
+std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments) {
   const BoundEffect& effect = model.effects.back();
   const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
   const auto multiples = std::find_if(coefficients.begin(), coefficients.end(),
                                       [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
-  if (multiples == coefficients.end() || effect.kind != PortKind::sensor) return nullptr;
+  if (multiples == coefficients.end() || effect.kind != PortKind::sensor) return std::nullopt;
   const int parameter = effect.coefficients[multiples - coefficients.begin()].parameter;
-  return parameter < 0 ? nullptr : &model.parameters[parameter];
-}
-
-}  // namespace
-
-bool measurements_are_rounded(const Model& model, const std::vector<Signals>& experiments) {
-  const Parameter* step = step_of_rounding(model);
-  return step != nullptr && std::all_of(experiments.begin(), experiments.end(), [&](const Signals& s) {
-           const std::vector<double> values = values_in_fit(s, model.effects.back().ports.front());
-           return rms_from_multiples(values, std::abs(step->value)) < share_of_step * std::abs(step->value);
-         });
-}
-
-std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments) {
-  const Parameter* known = step_of_rounding(model);
-  if (known == nullptr) return std::nullopt;
-  const Parameter& p = *known;
+  if (parameter < 0) return std::nullopt;
+  const Parameter& p = model.parameters[parameter];
   const double step = std::abs(p.value);
   for (const Signals& s : experiments) {
-    const std::vector<double> values = values_in_fit(s, model.effects.back().ports.front());
-    constexpr double noises = 2.0;
+    const std::vector<double> values = values_in_fit(s, effect.ports.front());
+    constexpr double share_of_step = 0.05, noises = 2.0;
     const double noise = measurement_noise(values), off = rms_from_multiples(values, step);
     if (!(off > share_of_step * step + (std::isfinite(noise) ? noises * noise : 0.0))) continue;
     return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + ", but the measurements are " + in_display_unit(off, p.unit) +

@@ -50,10 +50,6 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// nullopt: they are, or no effect says so.
 [[nodiscard]] std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments);
 
-/// The model's last effect reads an output in whole steps, and all measurements of it that enter the fit are in such steps (RMS within 0.05
-/// of one): nothing else makes them so.
-[[nodiscard]] bool measurements_are_rounded(const Model& model, const std::vector<Signals>& experiments);
-
 /// "its threshold = -1.9 K is not among the values of Tc, 3.1 to 22 K" where an edge of the model's last effect lies further than a tenth
 /// of the visited range outside of it: there the effect is on, or off, all the time. nullopt: all lie inside, or it has none.
 [[nodiscard]] std::optional<std::string> edge_not_visited(const FilterEstimate& estimate);
