@@ -1,8 +1,9 @@
 #!/bin/sh
-# Makes the three records of the study from the recording, beside it (15 MB, not kept in the repository).
+# Makes the records of the study from the recording, beside it (7 MB, not kept in the repository): rows FROM … TO of it, the first being 0.
 set -e
 cd "$(dirname "$0")"
-awk -v from=40650 -v to=57033 -f prepare.awk snls80mV.csv > multisine.csv
-awk -v from=105712 -v to=127399 -f prepare.awk snls80mV.csv > multisine_test.csv
-awk -v from=100 -v to=40574 -f prepare.awk snls80mV.csv > arrow.csv
-awk 'NR == 1 || (NR >= 40652 && NR < 46652)' snls80mV.csv > search.csv
+rows() { awk -v from="$1" -v to="$2" 'NR == 1 || (NR >= from + 2 && NR <= to + 2)' snls80mV.csv; }
+rows 40650 57033 > multisine.csv
+rows 105712 127399 > multisine_test.csv
+rows 100 40574 > arrow.csv
+rows 40650 46649 > search.csv
