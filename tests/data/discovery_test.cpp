@@ -151,6 +151,7 @@ Discovery example_discovery() {
   d.verdict = "add strut_wake";
   d.sentences = {"a remark"};
   d.tried = {"14 effects"};
+  d.not_tried = {{{"lag", {{"input", "wind"}}}, "input 'wind' is not recorded"}};
   d.force = {{"moment", {31.0, 0.8, "N m"}}};
   d.sweep_asks = {"camera_roll"};
   d.fixed_parameters = {{"k is fixed at 39"}};
@@ -218,6 +219,7 @@ TEST(DiscoveryFiles, ReadBackWhatWasWritten) {
   EXPECT_EQ(back.verdict, d.verdict);
   EXPECT_EQ(back.sentences, d.sentences);
   EXPECT_EQ(back.tried, d.tried);
+  EXPECT_EQ(not_tried_in_words(back), not_tried_in_words(d));
   EXPECT_EQ(back.sweep_asks, d.sweep_asks);
   EXPECT_EQ(back.fixed_parameters, d.fixed_parameters);
   EXPECT_EQ(back.unexplained_port, "dw/dt");

@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "misfit/data/bin_size.h"
+#include "misfit/data/study_keys.h"
 #include "tests/data/study_folder.h"
 
 namespace misfit {
@@ -135,6 +137,21 @@ TEST_F(StudyFolder, WhatIsLeftOutHasTheDefaultsOfTheContract) {
   EXPECT_EQ(read_with("[camera]\nsweep = \"static_sweep.csv\"\n").camera.offer.size(), 5U);
   EXPECT_TRUE(read_with("[camera]\nsweep = \"static_sweep.csv\"\noffer = []\n").camera.offer.empty());
   EXPECT_EQ(read_with("[camera]\nsweep = \"static_sweep.csv\"\n").camera.model, "pinhole");
+}
+
+/// What `misfit help study` and resolved.toml say is made of the structs that hold what was read.
+TEST_F(StudyFolder, DefaultsOfKeysAreThoseOfTheStructs) {
+  const auto fallback = [](const char* group, const char* key) { return config::group_of(study_keys(), group).key(key).fallback; };
+  EXPECT_EQ(fallback("sliding_bin", "width"), "\"1.5 deg\"");
+  EXPECT_EQ(fallback("sliding_bin", "step"), "\"0.1 deg\"");
+  EXPECT_EQ(fallback("study", "seed"), "1");
+  EXPECT_EQ(fallback("experiment", "exclude"), "0");
+  EXPECT_EQ(fallback("video", "check_fields"), "true");
+  EXPECT_EQ(fallback("noise.NAME", "fixed"), "true");
+  EXPECT_EQ(fallback("uncertainty.distribution", "NAME"), "\"3 sigma\"");
+  const Study study = read_with("[sliding_bin]\n");
+  EXPECT_DOUBLE_EQ(study.bin_width, BinSize{}.width);
+  EXPECT_DOUBLE_EQ(study.bin_step, BinSize{}.step);
 }
 
 TEST_F(StudyFolder, AMissingOrBrokenStudyNamesThePlace) {

@@ -285,6 +285,8 @@ TEST(CandidateModels, LeaveOutWhatDoesNotSuit) {
   EXPECT_THAT(names, testing::IsSupersetOf({"strut_wake", "vortex_shedding", "coulomb_friction", "camera_roll"}));
   for (const char* other : {"static_moment", "gravity", "gust", "apex_jitter", "coning", "periodic_forcing", "lag"})
     EXPECT_THAT(names, testing::Not(testing::Contains(other))) << "in the model, driven by noise, of another system, or specialised";
+  for (const NotTried& n : list_candidates(flight.estimate, flight.request, registry(), nullptr).not_tried)
+    ADD_FAILURE() << n.place.effect << ": " << n.reason;
 }
 
 /// Its coefficient is C_n/sin(alpha_T), as the formula reads it.

@@ -1,14 +1,17 @@
 // Laws over every registered effect by itself. The author of an effect writes nothing here. Laws inside a system: effect_systems_test.cpp.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <set>
 
 #include "misfit/core/units.h"
 #include "misfit/model/role_units.h"
 #include "tests/model/differences.h"
 #include "tests/model/requests.h"
+#include "tests/paths.h"
 
 namespace misfit {
 namespace {
@@ -41,12 +44,36 @@ struct Inputs {
   }
 };
 
+/// The file of an effect, whose stem is its key.
+std::string file_of(const std::string& key) {
+  for (const char* folder : {"models", "tests/effects"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(paths::source() / folder)) {
+      if (entry.path().filename() == key + ".cpp") return std::filesystem::relative(entry.path(), paths::source()).string();
+    }
+  }
+  return "the file of " + key;
+}
+
 class EffectLaws : public testing::TestWithParam<std::string> {
  protected:
   const Effect& effect_ = registry().effect(GetParam());
   const EffectSpec& spec_ = effect_.spec();
   const std::vector<Example> examples_ = effect_.examples();
   const std::size_t outputs_ = spec_.ports.size() + spec_.states.size();
+  const std::string file_ = file_of(GetParam());
+
+  /// What to write, with the names that each list stands for.
+  [[nodiscard]] std::string example_line() const {
+    const auto names = [](const auto& list) {
+      std::vector<std::string> out;
+      for (const auto& item : list) out.emplace_back(item.name);
+      return fmt::format("{{{}}}", fmt::join(out, ", "));
+    };
+    std::string line = fmt::format("{{.constants = {{{}}}, .quantities = {}, .coefficients = {}", fmt::join(spec_.constants, ", "),
+                                   names(spec_.quantities), names(spec_.coefficients));
+    if (!spec_.states.empty()) line += fmt::format(", .states = {0}, .drifts = {0}", names(spec_.states));
+    return line + fmt::format(", .ports = {}, .source = \"…\"}}", names(spec_.ports));
+  }
 
   [[nodiscard]] Eigen::VectorXd outputs(const Inputs& in) const {
     Eigen::VectorXd out = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(outputs_), std::nan(""));
@@ -197,21 +224,25 @@ TEST_P(EffectLaws, DefaultsLieInsideBoundsAndStrengthsMayBeZero) {
 }
 
 TEST_P(EffectLaws, WorkedExamplesAreCompleteAndMeetTheFormula) {
-  ASSERT_FALSE(examples_.empty());
+  ASSERT_FALSE(examples_.empty()) << file_ << ": add to examples() a line computed by hand,\n  " << example_line();
   for (std::size_t e = 0; e < examples_.size(); ++e) {
     const Example& x = examples_[e];
-    ASSERT_EQ(x.quantities.size(), spec_.quantities.size()) << "example " << e;
-    ASSERT_EQ(x.coefficients.size(), spec_.coefficients.size()) << "example " << e;
-    ASSERT_EQ(x.states.size(), spec_.states.size()) << "example " << e;
-    ASSERT_EQ(x.constants.size(), spec_.constants.size()) << "example " << e;
-    ASSERT_EQ(x.ports.size(), spec_.ports.size()) << "example " << e;
-    ASSERT_EQ(x.drifts.size(), spec_.states.size()) << "example " << e;
-    EXPECT_NE(std::string(x.source), "") << "example " << e;
+    ASSERT_EQ(x.quantities.size(), spec_.quantities.size())
+        << file_ << ", example " << e << ": .quantities = {…} has one number for each of `quantities`";
+    ASSERT_EQ(x.coefficients.size(), spec_.coefficients.size())
+        << file_ << ", example " << e << ": .coefficients = {…} has one number for each of `coefficients`";
+    ASSERT_EQ(x.states.size(), spec_.states.size()) << file_ << ", example " << e << ": .states = {…} has one number for each of `states`";
+    ASSERT_EQ(x.constants.size(), spec_.constants.size())
+        << file_ << ", example " << e << ": .constants = {…} has one number for each of `constants`";
+    ASSERT_EQ(x.ports.size(), spec_.ports.size()) << file_ << ", example " << e << ": .ports = {…} has one number for each of `ports`";
+    ASSERT_EQ(x.drifts.size(), spec_.states.size()) << file_ << ", example " << e << ": .drifts = {…} has one number for each of `states`";
+    EXPECT_NE(std::string(x.source), "") << file_ << ", example " << e << ": .source = \"…\" says how it was computed";
     std::vector<double> expected = x.ports;
     expected.insert(expected.end(), x.drifts.begin(), x.drifts.end());
     const Eigen::VectorXd out = outputs(Inputs(x));
     for (std::size_t o = 0; o < expected.size(); ++o)
-      EXPECT_NEAR(out[static_cast<Eigen::Index>(o)], expected[o], 1e-6 * std::abs(expected[o])) << "example " << e << ", output " << o;
+      EXPECT_NEAR(out[static_cast<Eigen::Index>(o)], expected[o], 1e-6 * std::abs(expected[o]))
+          << file_ << ", example " << e << ", output " << o << ": the formula and the number of .ports or .drifts differ";
   }
 }
 
@@ -220,7 +251,7 @@ TEST_P(EffectLaws, EveryInputAndOutputIsNonZeroInSomeExample) {
     for (std::size_t i = 0; i < count; ++i) {
       bool seen = false;
       for (const auto& e : examples_) seen = seen || (e.*part).at(i) != 0.0;
-      EXPECT_TRUE(seen) << what << " " << i << " is 0 in every example";
+      EXPECT_TRUE(seen) << file_ << ": " << what << " " << i << " is 0 in every example: give it another value in one of examples()";
     }
   };
   covered("coefficient", spec_.coefficients.size(), &Example::coefficients);

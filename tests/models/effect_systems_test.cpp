@@ -20,7 +20,7 @@ std::string owner_of(const std::string& coefficient) {
       if (!c.shared && c.name == coefficient) return key;
     }
   }
-  throw std::logic_error("nobody lends " + coefficient);
+  throw std::logic_error("no effect owns '" + coefficient + "': add one whose coefficient of that name is not .shared");
 }
 
 /// Roles without a default: an effect of unknown form has to be told of what it is a curve.
@@ -34,9 +34,14 @@ std::map<std::string, std::string> roles_without_default(const EffectSpec& spec,
   return out;
 }
 
-/// A system in which the effect binds with its default roles, if there is one.
-std::vector<Model> models_with(const std::string& key) {
+/// Models in which the effect binds with its default roles; why it does not in the others.
+struct ModelsWith {
   std::vector<Model> models;
+  std::string refusals;
+};
+
+ModelsWith models_with(const std::string& key) {
+  ModelsWith out;
   const auto& coefficients = registry().effect(key).spec().coefficients;
   for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), tanks({}), declared("pendulum", {}),
                               declared("cascaded_tanks", {}), declared("duffing", {})}) {
@@ -49,14 +54,21 @@ std::vector<Model> models_with(const std::string& key) {
     alone.curves.clear();
     for (const auto& [name, of] : curves_without_knots(alone, registry())) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
     try {
-      models.push_back(assemble(alone, registry()));
-    } catch (const InputError&) {  // does not suit this system
+      out.models.push_back(assemble(alone, registry()));
+    } catch (const InputError& error) {  // does not suit this system
+      out.refusals += "\n  " + request.system + ": " + error.what();
     }
   }
-  return models;
+  return out;
 }
 
-TEST_P(EffectInSystems, SuitsAtLeastOneSystemWithItsDefaultRoles) { EXPECT_FALSE(models_with(GetParam()).empty()); }
+TEST_P(EffectInSystems, SuitsAtLeastOneSystemWithItsDefaultRoles) {
+  const ModelsWith found = models_with(GetParam());
+  EXPECT_FALSE(found.models.empty()) << "mend the roles and units of " << GetParam()
+                                     << ".cpp, or add a system that it suits to models_with() of tests/models/effect_systems_test.cpp, "
+                                        "for example `declared(\"SYSTEM\", {})`. What the systems there say:"
+                                     << found.refusals;
+}
 
 /// Power that the first effect of a model gives to the dynamic ports it acts on, at random states, inputs and coefficients.
 double random_power(const Model& model, std::mt19937& random) {
@@ -89,14 +101,14 @@ TEST_P(EffectInSystems, NeverAddsPowerIfDeclaredDissipative) {
   if (!registry().effect(GetParam()).spec().dissipative) return;
   std::mt19937 random(5);
   int judged = 0;
-  for (const Model& model : models_with(GetParam())) {
+  for (const Model& model : models_with(GetParam()).models) {
     for (int trial = 0; trial < 300; ++trial) {
       const double power = random_power(model, random);
       EXPECT_LE(power, 0.0);
       judged += power < 0.0 ? 1 : 0;
     }
   }
-  EXPECT_GT(judged, 100) << "no system gave power to judge";
+  EXPECT_GT(judged, 100) << "no system gave power to judge: add one on which " << GetParam() << " acts to models_with()";
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, EffectInSystems, testing::ValuesIn(registry().effect_keys()), [](const auto& key) { return key.param; });

@@ -42,9 +42,11 @@ TEST(ShownDiscovery, SaysTheVerdictFirstAndNamesOnlyOtherEffectsAsIndistinguisha
   d.candidates = {wake};
   d.verdict = "missing: strut_wake";
   d.tried = {"14 effects", "3 sensors"};
+  d.not_tried = {{{"brake", {}}, "unit 'x' is unknown"}};
   const std::string text = as_text(blocks_of(d));
   EXPECT_LT(text.find("Missing: strut_wake."), text.find("rank"));
-  expect_parts(text, {"275.0", "< 1e-300", "coning", "strut_wake: it is", "2 in discovery.json"});
+  expect_parts(text, {"275.0", "< 1e-300", "coning", "strut_wake: it is", "2 in discovery.json", "Effects that could not be tried",
+                      "brake: not tried: unit 'x' is unknown"});
   EXPECT_EQ(text.find("strut_wake, coning"), std::string::npos);
   EXPECT_EQ(text.find("Estimates of a candidate"), std::string::npos) << "none is accepted";
   d.candidates.front().accepted = true;

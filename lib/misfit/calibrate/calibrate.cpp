@@ -94,8 +94,12 @@ void add_residuals(Calibration& calibration, const std::vector<SweepPoint>& poin
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SweepPoint& p = points[i];
     const auto predicted = predict(p, l_b, calibration.camera);
-    if (std::isfinite(p.P_y)) calibration.residuals.push_back({p.point, 'y', p.theta, p.P_y, predicted[0], keep[i]});
-    if (std::isfinite(p.P_z)) calibration.residuals.push_back({p.point, 'z', p.theta, p.P_z, predicted[1], keep[i]});
+    if (std::isfinite(p.P_y))
+      calibration.residuals.push_back(
+          {.point = p.point, .coordinate = 'y', .theta = p.theta, .measured = p.P_y, .predicted = predicted[0], .used = keep[i]});
+    if (std::isfinite(p.P_z))
+      calibration.residuals.push_back(
+          {.point = p.point, .coordinate = 'z', .theta = p.theta, .measured = p.P_z, .predicted = predicted[1], .used = keep[i]});
   }
 }
 

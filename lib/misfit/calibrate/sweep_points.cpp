@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
+#include "misfit/core/units.h"
 
 namespace misfit {
 namespace {
@@ -21,7 +21,7 @@ double at(const std::vector<double>& column, std::size_t i) { return i < column.
 SweepPoint rig_point(int k, double theta, const RigGeometry& g) {
   const double c = std::cos(theta);
   const double s = std::sin(theta);
-  SweepPoint p{k, theta, 0.0, 0.0, missing, missing};
+  SweepPoint p{.point = k, .theta = theta, .P_y = missing, .P_z = missing};
   p.x = g.l_p + (k == 1 ? g.R1 * c : k == 2 ? -g.R2 * c : g.R3 * c);
   p.z = k == 1 ? g.R1 * s : k == 2 ? g.R2 * s : -g.R3 * s;
   return p;
@@ -29,9 +29,8 @@ SweepPoint rig_point(int k, double theta, const RigGeometry& g) {
 
 void check_geometry(const RigGeometry& g, const SweepPoint& p) {
   if (g.l_b > 0.0 && p.x < g.l_b) return;
-  throw InputError("geometry: at theta = " + format_value(p.theta * 180.0 / std::numbers::pi) + " deg reference point " +
-                   std::to_string(p.point) + " is " + format_value(p.x) +
-                   " m downstream of the backshell face, at or behind the camera (l_b = " + format_value(g.l_b) +
+  throw InputError("geometry: at theta = " + format_value(p.theta / kDegree) + " deg reference point " + std::to_string(p.point) + " is " +
+                   format_value(p.x) + " m downstream of the backshell face, at or behind the camera (l_b = " + format_value(g.l_b) +
                    " m); check l_b, l_p, R1, R2 and R3");
 }
 

@@ -100,7 +100,12 @@ void add_trims(const Estimate& a, const Estimate& b, const Sides& sides, Compari
   const double gap = a.value - b.value;
   const double sigmas = sigma > 0.0 ? std::abs(gap) / sigma : std::numeric_limits<double>::quiet_NaN();
   const Estimate difference{gap, sigma, a.unit};
-  c.trims.push_back({sides.a, sides.b, sides.reference, difference, sigmas, sentence("the trim", sides, difference, sigmas)});
+  c.trims.push_back({.a = sides.a,
+                     .b = sides.b,
+                     .reference = sides.reference,
+                     .difference = difference,
+                     .sigmas = sigmas,
+                     .sentence = sentence("the trim", sides, difference, sigmas)});
 }
 
 bool differentiates(const std::string& method) {
@@ -123,7 +128,12 @@ void add_parameters(const Fit& a, const Fit& b, Comparison& c) {
     if (is_curve_coefficient(name) || other == b.parameters.end() || other->second.unit != one.unit) continue;
     const Estimate difference{one.value - other->second.value, std::hypot(one.sigma, other->second.sigma), one.unit};
     if (!(difference.sigma > 0.0)) continue;
-    ParameterDifference d{name, a.method, b.method, difference, std::abs(difference.value) / difference.sigma, ""};
+    ParameterDifference d{.parameter = name,
+                          .a = a.method,
+                          .b = b.method,
+                          .difference = difference,
+                          .sigmas = std::abs(difference.value) / difference.sigma,
+                          .sentence = ""};
     constexpr double min_sigmas = 3.0;
     if (d.sigmas > min_sigmas) {
       d.sentence = sentence(name, {a.method, b.method}, difference, d.sigmas) + ": they cannot both be right";

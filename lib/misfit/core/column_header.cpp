@@ -108,7 +108,8 @@ NameAndUnit read_header(const std::string& header) {
     const auto from = header.rfind(open), to = header.rfind(close);
     if (from == std::string::npos || to == std::string::npos || to < from || from == 0) continue;
     const std::string inside = plain_unit(header.substr(from + 1, to - from - 1));
-    NameAndUnit out{as_name(header.substr(0, from)), "", "", false};
+    NameAndUnit out;
+    out.name = as_name(header.substr(0, from));
     const auto spelt = std::find_if(spellings.begin(), spellings.end(), [&](const Spelling& s) { return s.written == inside; });
     if (is_unit(inside)) {
       out.unit = inside;
@@ -123,7 +124,8 @@ NameAndUnit read_header(const std::string& header) {
   }
   const std::string name = as_name(header);
   std::size_t best = 0;
-  NameAndUnit out{name, "", "", false};
+  NameAndUnit out;
+  out.name = name;
   for (const Spelling& s : spellings) {
     if (name == s.written && std::find(units_as_names.begin(), units_as_names.end(), name) != units_as_names.end()) out.unit = s.unit;
     const std::string tail = "_" + std::string(s.written);

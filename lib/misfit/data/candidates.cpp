@@ -60,6 +60,11 @@ void fields(Archive& json, MaybeConst<EffectPlace> auto& place) {
 }
 
 template <class Archive>
+void fields(Archive& json, MaybeConst<NotTried> auto& effect) {
+  json("effect", effect.place.effect), json("roles", effect.place.roles), json("reason", effect.reason);
+}
+
+template <class Archive>
 void fields(Archive& json, MaybeConst<ForceColumn> auto& column) {
   json("rank", column.rank), json("port", column.port), json("unit", column.unit);
 }
@@ -73,7 +78,8 @@ template <class Archive>
 void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
   auto& d = stored.discovery;
   json("outcome", NameOf(d.outcome, search_outcome_names));
-  json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("force", d.force);
+  json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("not_tried", d.not_tried),
+      json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
   json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("held", d.fixed_parameters),
       json("sweep_asks", d.sweep_asks), json("added_force", stored.added);
@@ -152,6 +158,12 @@ std::string tested_in_words(const Discovery& discovery) {
     out.push_back(counted(effects.size(), "effect", "effects") + (places > effects.size() ? fmt::format(" at {} places", places) : ""));
   if (curves > 0) out.push_back(counted(curves, "curve of unknown form", "curves of unknown form"));
   return join_words(out);
+}
+
+std::vector<std::string> not_tried_in_words(const Discovery& discovery) {
+  std::vector<std::string> out;
+  for (const NotTried& n : discovery.not_tried) out.push_back(effect_at(n.place.effect, n.place.roles) + ": not tried: " + n.reason);
+  return out;
 }
 
 std::string unexplained_place(const Discovery& discovery) {

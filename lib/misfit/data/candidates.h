@@ -61,6 +61,12 @@ struct EffectPlace {
   std::map<std::string, std::string> roles;
 };
 
+/// An effect that could not be looked for, and why.
+struct NotTried {
+  EffectPlace place;
+  std::string reason;
+};
+
 /// "overflow (level = x1, port = dx1/dt)"; the key alone where all roles are the defaults.
 [[nodiscard]] std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles);
 /// The same as words of a command: {"level=x1", "port=dx1/dt"}; {"default"} where all roles are the defaults.
@@ -96,6 +102,7 @@ struct Discovery {
   std::string verdict;                    ///< one sentence: what to add, or that nothing is missing, or that no known effect explains it
   std::vector<std::string> sentences;     ///< further remarks: groups and what would separate them, phantoms, calibration against flight
   std::vector<std::string> tried;         ///< families and cells that were looked at, in words
+  std::vector<NotTried> not_tried;        ///< effects that suit the system, but could not be assembled into the model
   std::map<std::string, Estimate> force;  ///< random force before
   std::string unexplained_port,
       unexplained_quantity;  ///< where a force of unknown form depends on what, if that is the verdict; else empty
@@ -121,6 +128,9 @@ struct Discovery {
 [[nodiscard]] std::size_t curves_tested(const Discovery& discovery);
 /// "20 effects and 20 curves of unknown form"; where an effect was tested at several places: "3 effects at 5 places and …".
 [[nodiscard]] std::string tested_in_words(const Discovery& discovery);
+
+/// Of each effect that could not be looked for: "overflow: not tried: input 'u' is not recorded".
+[[nodiscard]] std::vector<std::string> not_tried_in_words(const Discovery& discovery);
 
 /// "a force on dw/dt", "an error of V".
 [[nodiscard]] std::string unexplained_place(const Discovery& discovery);

@@ -204,8 +204,8 @@ struct Study {
   std::optional<SimulateStudy> simulate;
   std::optional<UncertaintyStudy> uncertainty;
   std::optional<double> fit_time_limit, discover_time_limit;  ///< time_limit of [fit], [discover] [s]
-  double bin_width = 0.0;                                     ///< [sliding_bin] width [rad]; 0 = default 1.5 deg
-  double bin_step = 0.0;                                      ///< [sliding_bin] step [rad]; 0 = default 0.1 deg
+  double bin_width = 0.0;                                     ///< [sliding_bin] width [rad]; 0: that of BinSize
+  double bin_step = 0.0;                                      ///< [sliding_bin] step [rad]; 0: that of BinSize
   std::string text;                                           ///< the file's content, for hashing and resolved.toml
 };
 

@@ -1,8 +1,12 @@
 #include "misfit/data/study_keys.h"
 
+#include "misfit/core/text.h"
 #include "misfit/core/toml_document.h"
+#include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
+#include "misfit/data/bin_size.h"
 #include "misfit/data/estimators.h"
+#include "misfit/data/study.h"
 #include "misfit/math/camera.h"
 
 namespace misfit {
@@ -17,6 +21,9 @@ constexpr double max_runs = 100'000'000, max_block = 10'000'000, max_excluded = 
 const std::vector<std::string> markers{"ring", "bright", "dark"};
 const std::vector<std::string> followed{"auto", "moving", "ring", "bright", "dark", "aruco"};
 
+/// Defaults are those of the structs that hold what was read (data/study.h): each stands there alone.
+const char* flag_text(bool flag) { return flag ? "true" : "false"; }
+
 // A key is a line of attributes and a line of meaning.
 // clang-format off
 
@@ -28,7 +35,7 @@ KeyGroup study_group() {
        .choices = estimator_names(),
        .meaning = std::string("Estimators, in this order of work; ") + random_force_estimator().name +
           " serves diagnose and discover and is run there if it is not named."},
-      {.name = "seed", .type = Type::integer, .fallback = "1", .least = 0, .meaning = "Of all random numbers."}}};
+      {.name = "seed", .type = Type::integer, .fallback = std::to_string(Study{}.seed), .least = 0, .meaning = "Of all random numbers."}}};
 }
 
 KeyGroup system_group() {
@@ -160,7 +167,7 @@ std::vector<KeyGroup> video_groups() {
   KeyGroup video{"video", "How a video is read and what is followed in it.",
      {{.name = "fields", .type = Type::choice, .fallback = "\"auto\"", .choices = {"auto", "progressive", "top_first", "bottom_first"},
        .meaning = "Interlacing: order of the two fields of a frame; auto finds it from the pictures."},
-      {.name = "check_fields", .type = Type::flag, .fallback = "true",
+      {.name = "check_fields", .type = Type::flag, .fallback = flag_text(VideoStudy{}.check_fields),
        .meaning = "false: fields holds even if the pictures contradict it."},
       {.name = "length", .type = Type::number, .unit = "m", .otherwise = "none: no metres",
        .meaning = "A length that is known in the picture, in the plane of the motion: with it a film gives x_m and y_m."},
@@ -193,7 +200,7 @@ KeyGroup experiment_group() {
       {.name = "columns", .type = Type::table, .otherwise = "headers are called as the signals",
        .meaning = "Signal = header of its column (of a video: x_px, y_px, x_m or y_m), { t = \"t_s\", y = \"y_V\" }, or channel of a log: { y = \"topic.field\" }. In a log, "
                   "the rows are the times of all outputs and of held inputs, or those of `t`; what was done is noted."},
-      {.name = "exclude", .type = Type::integer, .fallback = "0", .least = 0, .most = max_excluded,
+      {.name = "exclude", .type = Type::integer, .fallback = std::to_string(ExperimentStudy{}.exclude), .least = 0, .most = max_excluded,
        .meaning = "Samples at the beginning that do not count: a transient of the rig."},
       {.name = "validation", .type = Type::file, .otherwise = "nothing is held out",
        .form = "\"last 25 %\", [t0, t1] or a file (.csv, .mat, .ulg, …)",
@@ -284,7 +291,7 @@ std::vector<KeyGroup> noise_groups() {
       {"noise.NAME", "The same, fixed or as a start.",
        {{.name = "value", .type = Type::number, .unit = "of the output", .otherwise = "required", .least = 0.0, .above = true,
          .meaning = "Standard deviation."},
-        {.name = "fixed", .type = Type::flag, .fallback = "true", .meaning = "Fixed there, or estimated from there."}}}};
+        {.name = "fixed", .type = Type::flag, .fallback = flag_text(NoiseStudy{}.fixed), .meaning = "Fixed there, or estimated from there."}}}};
 }
 
 std::vector<KeyGroup> force_groups() {
@@ -313,13 +320,13 @@ KeyGroup uncertainty_group() {
      {{.name = "runs", .type = Type::integer, .fallback = "1000", .least = 1, .most = max_runs, .meaning = "Monte Carlo runs."},
       {.name = "perturb", .type = Type::table, .otherwise = "nothing",
        .meaning = "What is perturbed and how far: { V = \"0.5 m/s\", P_y = \"10 px\" }."},
-      {.name = "distribution", .type = Type::choice, .otherwise = "\"3 sigma\"", .choices = distributions,
+      {.name = "distribution", .type = Type::choice, .otherwise = toml_string(PerturbStudy{}.distribution), .choices = distributions,
        .form = R"("3 sigma", "2 sigma", "sigma", "uniform" or table)", .formerly = "readings",
        .meaning = "Distribution of the errors whose size perturb gives: normal, the size being 3, 2 or 1 standard deviations, or uniform "
                   "within ± the size. One for all, or a table."},
       {.name = "camera", .type = Type::choice, .otherwise = "not perturbed, but for what perturb names", .choices = {"calibration"},
        .meaning = "calibration: the camera's parameters too, with their joint covariance."},
-      {.name = "recalibrate", .type = Type::flag, .fallback = "false",
+      {.name = "recalibrate", .type = Type::flag, .fallback = flag_text(UncertaintyStudy{}.recalibrate),
        .meaning = "The camera is calibrated again in every run, from the sweep with the perturbed geometry."},
       {.name = "bootstrap", .type = Type::integer, .otherwise = "no bootstrap", .least = 2, .most = max_runs,
        .meaning = "Replicas of the block bootstrap, for every method."},
@@ -336,18 +343,18 @@ std::vector<KeyGroup> perturbation_groups() {
          .any = true,
          .meaning = "A name of [geometry] or [camera], a parameter, or P_y, P_z: an offset of all pixels."}}},
       {"uncertainty.distribution", "Where not all have the same distribution.",
-       {{.name = "NAME", .type = Type::choice, .fallback = "\"3 sigma\"", .choices = distributions, .any = true,
+       {{.name = "NAME", .type = Type::choice, .fallback = toml_string(PerturbStudy{}.distribution), .choices = distributions, .any = true,
          .meaning = "Of an entry of perturb."}}}};
 }
 
 KeyGroup sliding_bin_group() {
-  const auto angle = [](const char* name, const char* meaning, const char* fallback) {
-    return Key{.name = name, .type = Type::number, .unit = "rad", .fallback = fallback, .least = 0.0, .most = 30.0 * kDegree,
-               .above = true, .meaning = meaning};
+  const auto angle = [](const char* name, const char* meaning, double fallback) {
+    return Key{.name = name, .type = Type::number, .unit = "rad", .fallback = toml_string(format_value(fallback / kDegree) + " deg"),
+               .least = 0.0, .most = 30.0 * kDegree, .above = true, .meaning = meaning};
   };
   const std::string method = estimators::sliding_bin.name;
   return {method, "Bins of the method " + method + ".",
-     {angle("width", "Width of a bin.", "\"1.5 deg\""), angle("step", "By which the bin slides.", "\"0.1 deg\"")}};
+     {angle("width", "Width of a bin.", BinSize{}.width), angle("step", "By which the bin slides.", BinSize{}.step)}};
 }
 
 std::vector<KeyGroup> time_groups() {

@@ -79,7 +79,7 @@ std::map<TomlPath, std::string> values_of(const StudyText& study, const TomlPath
     TomlPath path = node.path;
     if (!without.empty() && begins_with(path, without)) {
       if (as.empty()) continue;
-      path.erase(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(without.size()));
+      path.erase(path.begin(), path.begin() + without.size());
       path.insert(path.begin(), as.begin(), as.end());
     }
     out[path] = std::to_string(static_cast<int>(node.kind)) + node.value;

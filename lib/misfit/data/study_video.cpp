@@ -101,7 +101,8 @@ void read_chessboard(const DescribedSection& video, VideoStudy& v) {
 }
 
 KnownPoint known_point(const DescribedSection& section, const std::string& name) {
-  KnownPoint out{name, std::nullopt, std::nullopt, 0.0, 0.0};
+  KnownPoint out;
+  out.name = name;
   if (const auto at = pixels(section, "pixel", 2, "[column, row]")) out.at = PixelPoint{(*at)[0], (*at)[1]};
   if (const auto tag = section.integer("tag")) out.tag = static_cast<int>(*tag);
   const auto place = section.numbers("place");

@@ -114,9 +114,7 @@ std::vector<bool> not_held_out(const FilterEstimate& estimate, const ForceSensit
     const std::size_t channels = use.size() / std::max<std::size_t>(samples, 1);
     for (std::size_t k = 0; k < samples; ++k) {
       const auto first = use.begin() + static_cast<std::ptrdiff_t>(k * channels);
-      if (std::find(first, first + static_cast<std::ptrdiff_t>(channels), SampleRole::validation) !=
-          first + static_cast<std::ptrdiff_t>(channels))
-        out[offset + k] = false;
+      if (std::find(first, first + channels, SampleRole::validation) != first + channels) out[offset + k] = false;
     }
     offset += samples;
   }

@@ -177,8 +177,8 @@ std::vector<NisSeries> nis_of(const FilterEstimate& estimate) {
     series.upper = 1.0 + spread;
     double outside = 0.0;
     for (std::size_t from = 0; from + count <= squares.value.size(); from += count) {
-      const auto first = squares.value.begin() + static_cast<std::ptrdiff_t>(from);
-      const double nis = std::accumulate(first, first + static_cast<std::ptrdiff_t>(count), 0.0) / static_cast<double>(count);
+      const auto first = squares.value.begin() + from;
+      const double nis = std::accumulate(first, first + count, 0.0) / static_cast<double>(count);
       series.t.push_back(squares.t[from + count / 2]);
       series.nis.push_back(nis);
       outside += nis < series.lower || nis > series.upper ? 1.0 : 0.0;

@@ -18,13 +18,13 @@ struct Probe {
   static constexpr const char* size = "1";
   static constexpr const char* source = "definition";
   static constexpr const char* excludes = "-";
-  static constexpr Role ports[] = {{"port", "*"}};
-  static constexpr CoefficientSpec coefficients[] = {{"unit", CoefficientKind::strength, 0.0, "{port}", -1e12, 1e12, 1.0, "force"}};
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  static constexpr CoefficientSpec coefficients[] = {{.name = "unit", .unit = "{port}", .lower = -1e12, .upper = 1e12, .doc = "force"}};
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
     F[0] = in.c[0];
   }
-  static std::vector<Example> examples() { return {{{}, {}, {2.0}, {}, 0.0, {2.0}, {}, "by hand"}}; }
+  static std::vector<Example> examples() { return {{.coefficients = {2.0}, .ports = {2.0}, .source = "by hand"}}; }
 };
 
 /// The forced model with a probe on every dynamic port; only the probes are free, in the order of the ports.
@@ -39,7 +39,7 @@ Model probed(const FilterEstimate& estimate) {
     bound.ports = {p};
     bound.coefficients = {{int_size(model.parameters), -1}};
     bound.first_state = int_size(model.own_states);
-    Parameter unit{bound.name, ports[p].unit, "", 0.0, -1e12, 1e12, 1.0, true};
+    Parameter unit{.name = bound.name, .unit = ports[p].unit, .doc = "", .lower = -1e12, .upper = 1e12, .free = true};
     model.parameters.push_back(unit);
     model.effects.push_back(std::move(bound));
   }

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "misfit/core/error.h"
+#include "misfit/core/shown.h"
 #include "misfit/discover/bindings.h"
+#include "misfit/model/does_not_suit.h"
 
 namespace misfit {
 namespace {
@@ -29,7 +31,7 @@ bool has_linear_memory(const Effect& effect) {
       std::vector<double> z = example.states, out(ports + states, 0.0);
       z[moved] += by;
       effect.evaluate({example.quantities.data(), example.coefficients.data(), z.data(), example.constants.data(), example.t}, out.data());
-      return std::vector<double>(out.begin() + static_cast<std::ptrdiff_t>(ports), out.end());
+      return std::vector<double>(out.begin() + ports, out.end());
     };
     for (std::size_t z = 0; z < states; ++z) {
       const std::vector<double> at = drift(z, 0.0), ahead = drift(z, 0.7), behind = drift(z, -0.7);
@@ -204,17 +206,19 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
   return out;
 }
 
-/// An input that the model did without so far may have no values (Signals::inputs).
-bool has_its_inputs(const FilterEstimate& estimate, const Model& model) {
+/// An input that the model did without so far may have no values (Signals::inputs). InputError: it needs such a one.
+void require_inputs(const FilterEstimate& estimate, const Model& model) {
   const std::vector<std::string> needed = model.needed_inputs();
-  return std::all_of(estimate.data.begin(), estimate.data.end(), [&](const FilterData& data) {
-    return std::none_of(data.signals->inputs.begin(), data.signals->inputs.end(), [&](const Signal& input) {
-      return input.values.empty() && std::find(needed.begin(), needed.end(), input.name) != needed.end();
-    });
-  });
+  for (const FilterData& data : estimate.data) {
+    for (const Signal& input : data.signals->inputs) {
+      if (!input.values.empty() || std::find(needed.begin(), needed.end(), input.name) == needed.end()) continue;
+      throw InputError("input '" + shown(input.name) +
+                       "' is not recorded, or with gaps: it can be tried with a column of it in every experiment");
+    }
+  }
 }
 
-/// The model with the effect there, all fixed at the estimate; nullopt where the effect does not suit.
+/// The model with the effect there, all fixed at the estimate; nullopt where the effect does not suit. InputError: it cannot be tried.
 std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
                                                  const EffectPlace& place) {
   const auto& [key, roles] = place;
@@ -225,10 +229,10 @@ std::optional<CandidateModel> candidate_model_at(const FilterEstimate& estimate,
   out.request = with_effect(request, effect, roles, estimate.model.system->spec());
   try {
     out.model = assemble(out.request, registry);
-  } catch (const InputError&) {
+  } catch (const DoesNotSuit&) {
     return std::nullopt;
   }
-  if (!has_its_inputs(estimate, out.model)) return std::nullopt;
+  require_inputs(estimate, out.model);
   const bool on_sensor = out.model.effects.back().kind == PortKind::sensor;
   out.family = on_sensor ? CandidateFamily::sensor : is_generic(effect.spec()) ? CandidateFamily::generic : CandidateFamily::physics;
   for (auto& p : out.model.parameters) p.free = false;
@@ -244,6 +248,18 @@ bool already_listed(const CandidateModel& candidate_model, const std::vector<Can
   return std::any_of(effects.begin(), effects.end() - 1, [&](const BoundEffect& e) { return same_place(e, effects.back()); }) ||
          std::any_of(listed.begin(), listed.end(),
                      [&](const CandidateModel& s) { return same_place(s.model.effects.back(), effects.back()); });
+}
+
+/// A force or an error of its own that is off where its strengths are 0.
+bool can_be_candidate(const Effect& effect) {
+  return has_strength(effect.spec()) && !effect.spec().has_unknown_form() && !driven_by_noise(effect);
+}
+
+/// The same reason is given once, for the first of the effect's places.
+void add_not_tried(NotTried added, std::vector<NotTried>& list) {
+  const bool known = std::any_of(list.begin(), list.end(),
+                                 [&](const NotTried& n) { return n.place.effect == added.place.effect && n.reason == added.reason; });
+  if (!known) list.push_back(std::move(added));
 }
 
 }  // namespace
@@ -270,35 +286,48 @@ std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEff
   return out;
 }
 
-std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
-                                             const Calibration* calibration) {
-  std::vector<CandidateModel> out;
+CandidateList list_candidates(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                              const Calibration* calibration) {
+  CandidateList out;
   std::vector<std::string> suiting;  // candidates and what the model has
   for (const EffectRequest& effect : request.effects) suiting.push_back(effect.kind);
   const OperatingRange operating_range(estimate);
-  const SystemSpec& system = estimate.model.system->spec();
   for (const std::string& key : registry.effect_keys()) {
     const Effect& effect = registry.effect(key);
-    if (!has_strength(effect.spec()) || effect.spec().has_unknown_form() || driven_by_noise(effect)) continue;
-    for (const Roles& roles : enumerate_bindings(effect.spec(), system)) {
+    if (!can_be_candidate(effect)) continue;
+    for (const Roles& roles : enumerate_bindings(effect.spec(), estimate.model.system->spec())) {
       if (roles.empty() && in_model(request, key)) continue;
-      std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, {key, roles});
-      if (!candidate_model || already_listed(*candidate_model, out)) continue;
-      fill(effect, calibration, operating_range, *candidate_model);
-      if (std::find(suiting.begin(), suiting.end(), key) == suiting.end()) suiting.push_back(key);
-      out.push_back(std::move(*candidate_model));
+      try {
+        std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, {key, roles});
+        if (!candidate_model || already_listed(*candidate_model, out.models)) continue;
+        fill(effect, calibration, operating_range, *candidate_model);
+        if (std::find(suiting.begin(), suiting.end(), key) == suiting.end()) suiting.push_back(key);
+        out.models.push_back(std::move(*candidate_model));
+      } catch (const InputError& error) {
+        add_not_tried({{key, roles}, error.what()}, out.not_tried);
+      }
     }
   }
-  std::erase_if(out, [&](const CandidateModel& s) { return specialised(registry, suiting, s.effect); });
+  std::erase_if(out.models, [&](const CandidateModel& s) { return specialised(registry, suiting, s.effect); });
+  std::erase_if(out.not_tried, [&](const NotTried& n) { return specialised(registry, suiting, n.place.effect); });
   return out;
+}
+
+std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                             const Calibration* calibration) {
+  return list_candidates(estimate, request, registry, calibration).models;
 }
 
 std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect, const Calibration* calibration) {
   const Effect& asked = fitted.registry.effect(effect.kind);
-  if (!has_strength(asked.spec()) || asked.spec().has_unknown_form() || driven_by_noise(asked)) return std::nullopt;
-  std::optional<CandidateModel> out = candidate_model_at(fitted.estimate, fitted.request, fitted.registry, {effect.kind, effect.roles});
-  if (out) fill(asked, calibration, OperatingRange(fitted.estimate), *out);
-  return out;
+  if (!can_be_candidate(asked)) return std::nullopt;
+  try {
+    std::optional<CandidateModel> out = candidate_model_at(fitted.estimate, fitted.request, fitted.registry, {effect.kind, effect.roles});
+    if (out) fill(asked, calibration, OperatingRange(fitted.estimate), *out);
+    return out;
+  } catch (const InputError&) {  // what a study says of it has been assembled: only as a number, as here, it is refused
+    return std::nullopt;
+  }
 }
 
 Eigen::MatrixXd columns_with_fixed_gains(const FilterEstimate& estimate, const FilterModel& forced) {

@@ -39,13 +39,24 @@ struct CandidateModel {
 /// Stands for the time of the recording among indices of quantities, as in diagnose/features.h.
 inline constexpr int kTime = -1;
 
+/// Candidates, and the effects that the model cannot be assembled with though the system has a place for them: a declaration that is wrong,
+/// a coefficient that has to be a curve, an input without values, a model that becomes too large.
+struct CandidateList {
+  std::vector<CandidateModel> models;
+  std::vector<NotTried> not_tried;
+};
+
 /// Every effect of the registry that suits the model's system, is not in it, and has a strength; generic ones at each place that the system
 /// suggests (bindings.h). Left out: effects driven by noise (the filter has them), those of unknown form (unknown_form.h), and generic ones
 /// that a system's own effect specialises.
+[[nodiscard]] CandidateList list_candidates(const FilterEstimate& estimate, const ModelRequest& request, const Registry& registry,
+                                            const Calibration* calibration);
+/// The candidates alone.
 [[nodiscard]] std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request,
                                                            const Registry& registry, const Calibration* calibration);
 
-/// One effect as a study asks for it; nullopt where it has no strength, is driven by noise, or does not suit the system.
+/// One effect as a study asks for it; nullopt where it has no strength, is driven by noise, or does not suit the system, or cannot
+/// be assembled as a number.
 [[nodiscard]] std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect,
                                                                const Calibration* calibration);
 

@@ -12,7 +12,11 @@ namespace misfit {
 std::string label(const Candidate& c) { return effect_at(c.effect, c.roles); }
 
 RefitWork work_from(const FilterEstimate& estimate, const SearchContext& context) {
-  return {estimate, context.experiments, context.registry, context.options.threads, context.options.refit_limit};
+  return {.without = estimate,
+          .experiments = context.experiments,
+          .registry = context.registry,
+          .threads = context.options.threads,
+          .time_limit = context.options.refit_limit};
 }
 
 ConditionalScores::ConditionalScores(const Refit& in, const SearchContext& context)

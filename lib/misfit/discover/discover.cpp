@@ -44,7 +44,7 @@ class Search {
         experiments_(fitted.experiments),
         registry_(fitted.registry),
         options_(options),
-        candidate_models_(candidate_models(fitted.estimate, fitted.request, fitted.registry, options.calibration)),
+        candidates_(list_candidates(fitted.estimate, fitted.request, fitted.registry, options.calibration)),
         score_(fitted.estimate),
         force_(fitted.estimate) {}
 
@@ -80,13 +80,15 @@ class Search {
 
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
-    families_ = static_cast<double>(candidate_models_.size() + count_of_unknown_curves(scores()));
+    families_ = static_cast<double>(candidates_.models.size() + count_of_unknown_curves(scores()));
     if (const Effect& asked = registry_.effect(options_.only); asked.spec().has_unknown_form()) {
       out_.candidates = candidates_of_unknown_form(scores(), asked, families_);
       return std::move(out_);
     }
-    std::erase_if(candidate_models_, [&](const CandidateModel& s) { return s.effect != options_.only; });
-    screening_ = screen(scores(), candidate_models_, part(0.0, 1.0));
+    std::erase_if(candidates_.models, [&](const CandidateModel& s) { return s.effect != options_.only; });
+    std::erase_if(candidates_.not_tried, [&](const NotTried& n) { return n.place.effect != options_.only; });
+    out_.not_tried = candidates_.not_tried;
+    screening_ = screen(scores(), candidates_.models, part(0.0, 1.0));
     rank();
     refit_the_best_asked_for();
     for (auto& e : ranked_) {
@@ -120,14 +122,26 @@ class Search {
     };
   }
 
-  ScoreWork scores() const { return {estimate_, score_, force_, options_.threads, options_.calibration != nullptr}; }
-  RefitWork refit_work() const { return {estimate_, experiments_, registry_, options_.threads, options_.refit_limit}; }
+  ScoreWork scores() const {
+    return {.estimate = estimate_,
+            .score = score_,
+            .force = force_,
+            .threads = options_.threads,
+            .calibrated = options_.calibration != nullptr};
+  }
+  RefitWork refit_work() const {
+    return {.without = estimate_,
+            .experiments = experiments_,
+            .registry = registry_,
+            .threads = options_.threads,
+            .time_limit = options_.refit_limit};
+  }
 
   /// Every rank comes to the refits, which are shared: none is stopped before.
   void screen_all() {
     std::optional<SuspendedTimeLimit> all_ranks;
     if (ranks_started() > 1) all_ranks.emplace();
-    screening_ = screen(scores(), candidate_models_, part(0.0, end_of_screen));
+    screening_ = screen(scores(), candidates_.models, part(0.0, end_of_screen));
     unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
     families_ = static_cast<double>(screening_.size() + unknown_.size());
     rank();
@@ -200,7 +214,7 @@ class Search {
     if (!calm_) return;
     calm_score_.emplace(*calm_);
     const ForceSensitivity force(*calm_);
-    calm_screening_ = screen({*calm_, *calm_score_, force, options_.threads}, candidate_models_);
+    calm_screening_ = screen({*calm_, *calm_score_, force, options_.threads}, candidates_.models);
     nominated_ = forces_shown_by(*calm_, calm_screening_);
     const auto known = std::find_if(nominated_.begin(), nominated_.end(), [this](const ScreeningResult* s) {
       return std::any_of(ranked_.begin(), ranked_.end(), [&](const RankedCandidate& e) {
@@ -388,6 +402,7 @@ class Search {
     std::string curves = "unknown curves:";
     for (const auto& curve : unknown_) curves += (curve.of_output ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
+    out_.not_tried = candidates_.not_tried;
     write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);
     report_sensor_imitations(screening_, score_, out_);
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
@@ -404,7 +419,7 @@ class Search {
   const std::vector<Signals>& experiments_;
   const Registry& registry_;
   DiscoverOptions options_;
-  std::vector<CandidateModel> candidate_models_;
+  CandidateList candidates_;
   ScoreTest score_;
   ForceSensitivity force_;
   std::vector<ScreeningResult> screening_;

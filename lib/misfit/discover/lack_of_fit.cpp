@@ -70,7 +70,8 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
                                                   const DiscoverOptions& options) {
   const ScoreTest score(with);
   const ForceSensitivity force(with);
-  const ScoreWork work{with, score, force, options.threads, options.calibration != nullptr};
+  const ScoreWork work{
+      .estimate = with, .score = score, .force = force, .threads = options.threads, .calibrated = options.calibration != nullptr};
   const std::vector<int> read = quantities_that_tell(candidate_model, added.effects);
   std::vector<UnknownCurve> after = unknown_curves(work);
   const std::size_t of_anything = after.size();

@@ -11,6 +11,7 @@
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/does_not_suit.h"
 #include "misfit/model/model.h"
 
 namespace misfit {
@@ -114,7 +115,7 @@ std::optional<Without> without_effect(const FittedStudy& fitted, const std::stri
     for (const int index : own_parameters(estimate.model, *effect)) out.parameters += estimate.model.parameters[index].free ? 1 : 0;
     out.p_value = chi_square_tail(std::max(out.drop, 0.0), std::max(out.parameters, 1));
     return out;
-  } catch (const InputError&) {
+  } catch (const DoesNotSuit&) {
     return std::nullopt;  // another effect needs it
   } catch (const RunError&) {
     return std::nullopt;

@@ -16,6 +16,7 @@
 #include "misfit/discover/whole_strength.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/does_not_suit.h"
 
 namespace misfit {
 namespace {
@@ -81,7 +82,7 @@ WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vec
       if (of_input != 0.0 && bound.coefficients[c].parameter >= 0) there.parameters[bound.coefficients[c].parameter].value = of_input;
     }
     out = {std::move(there), *request, request->effects.back().roles};
-  } catch (const InputError&) {  // it cannot act there: it stays at its port, its strength fixed at the whole
+  } catch (const DoesNotSuit&) {  // it cannot act there: it stays at its port, its strength fixed at the whole
   }
   return out;
 }

@@ -45,10 +45,17 @@ std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequ
   const ScoreTest score(task.without.estimate);
   const ForceSensitivity force(task.without.estimate);
   const std::vector<CandidateModel> alone = {std::move(*model)};
-  const std::vector<ScreeningResult> screened =
-      screen({task.without.estimate, score, force, task.threads, task.calibration != nullptr}, alone);
+  const std::vector<ScreeningResult> screened = screen({.estimate = task.without.estimate,
+                                                        .score = score,
+                                                        .force = force,
+                                                        .threads = task.threads,
+                                                        .calibrated = task.calibration != nullptr},
+                                                       alone);
   if (screened.empty() || !screened.front().runs || !(screened.front().result.chi2 >= least_chi2)) return std::nullopt;
-  const RefitWork work{task.without.estimate, task.without.experiments, task.without.registry, task.threads};
+  const RefitWork work{.without = task.without.estimate,
+                       .experiments = task.without.experiments,
+                       .registry = task.without.registry,
+                       .threads = task.threads};
   const Refit found = refit(work, screened.front(), one_step(work, score, screened.front()));
   if (!found.ok) return std::nullopt;
   ScannedStart out;

@@ -9,15 +9,14 @@
 namespace misfit {
 namespace {
 
-constexpr Language c_language{[](const std::string& condition, const std::string& yes, const std::string& no) {
-                                return "(" + condition + " ? " + yes + " : " + no + ")";
-                              },
-                              [](const std::string& a, const std::string& b) { return "(" + a + " / " + b + ")"; },
-                              " && ",
-                              " || ",
-                              "",
-                              "const double ",
-                              ";"};
+constexpr Language c_language{.choose = [](const std::string& condition, const std::string& yes,
+                                           const std::string& no) { return "(" + condition + " ? " + yes + " : " + no + ")"; },
+                              .divide = [](const std::string& a, const std::string& b) { return "(" + a + " / " + b + ")"; },
+                              .both = " && ",
+                              .either = " || ",
+                              .function_prefix = "",
+                              .declare = "const double ",
+                              .end = ";"};
 
 /// A cubic between knots; outside: lib/misfit/README.md, 4.2.
 constexpr const char* knots_function = R"(

@@ -12,15 +12,14 @@
 namespace misfit {
 namespace {
 
-constexpr Language python_language{[](const std::string& condition, const std::string& yes, const std::string& no) {
-                                     return "(" + yes + " if " + condition + " else " + no + ")";
-                                   },
-                                   [](const std::string& a, const std::string& b) { return "_div(" + a + ", " + b + ")"; },
-                                   " and ",
-                                   " or ",
-                                   "_",
-                                   "",
-                                   ""};
+constexpr Language python_language{.choose = [](const std::string& condition, const std::string& yes,
+                                                const std::string& no) { return "(" + yes + " if " + condition + " else " + no + ")"; },
+                                   .divide = [](const std::string& a, const std::string& b) { return "_div(" + a + ", " + b + ")"; },
+                                   .both = " and ",
+                                   .either = " or ",
+                                   .function_prefix = "_",
+                                   .declare = "",
+                                   .end = ""};
 
 /// Python raises where C has inf and nan.
 constexpr const char* functions_text = R"(

@@ -24,11 +24,33 @@ FittedModel with_own_roughness(FittedModel fitted) {
   return fitted;
 }
 
+/// The model with the values that it has and roughness to be chosen, without a fit: where a search begins.
+FittedModel at_own_values(const Model& model) {
+  FittedModel out;
+  out.model = model;
+  out.penalties = curve_penalties(model);
+  return out;
+}
+
+Estimation estimation_by(const EstimatorInfo& method) {
+  Estimation out;
+  out.at.method = method.name;
+  return out;
+}
+
+Maximisation no_maximum(const std::string& why) {
+  Maximisation out;
+  out.why = why;
+  return out;
+}
+
 // sliding_bin
 
 Estimation run_sliding_bin(const EstimationTask& task) {
-  Estimation out{{estimators::sliding_bin.name, {{}, task.model, {}, {}}, {}, {}, {}, task.bins}, {}};
+  Estimation out = estimation_by(estimators::sliding_bin);
+  out.at.fitted.model = task.model;
   out.at.fitted.fit = sliding_bin(task.model, task.experiments.front(), task.bins);
+  out.at.bins = task.bins;
   return out;
 }
 
@@ -39,8 +61,9 @@ Fit refit_sliding_bin(const FittedMethod& from, const Experiments& experiments) 
 // equation_error
 
 Estimation run_equation_error(const EstimationTask& task) {
-  return {{estimators::equation_error.name, task.regression ? task.regression() : equation_error(task.model, task.experiments), {}, {}, {}},
-          {}};
+  Estimation out = estimation_by(estimators::equation_error);
+  out.at.fitted = task.regression ? task.regression() : equation_error(task.model, task.experiments);
+  return out;
 }
 
 Fit refit_equation_error(const FittedMethod& from, const Experiments& experiments) {
@@ -56,7 +79,7 @@ std::string begun_at_own_values(const std::string& why) {
 
 Estimation run_output_error(const EstimationTask& task) {
   TrajectoryStart start = trajectory_start(task.model, task.experiments, task.regression);
-  Estimation out{{estimators::output_error.name, {}, {}, {}, {}}, {}};
+  Estimation out = estimation_by(estimators::output_error);
   if (!start.regressed && task.model.free_parameters().empty()) {
     out.at.fitted = std::move(start.from);
     out.at.fitted.fit.method = estimators::output_error.name;
@@ -69,7 +92,7 @@ Estimation run_output_error(const EstimationTask& task) {
   // The short segments that rough values need cannot be run where a few samples say too little of a state; then without them.
   for (const bool longer_segments : {false, true}) {
     options.from_regression = longer_segments;
-    FittedModel own = output_error({{}, task.model, curve_penalties(task.model), {}}, task.experiments, options);
+    FittedModel own = output_error(at_own_values(task.model), task.experiments, options);
     if (!own.fit.usable()) continue;
     own.fit.warnings.push_back(begun_at_own_values(out.at.fitted.fit.message));
     out.at.fitted = std::move(own);
@@ -97,7 +120,7 @@ Maximisation maximise_output_error(const FittedMethod& from, const Experiments& 
     options.from_regression = false;
   }
   const FittedModel end = output_error(start, experiments, options);
-  if (end.fit.status != FitStatus::converged || !end.fit.loglik) return {{}, to_string(end.fit.status) + ": " + end.fit.message, {}};
+  if (end.fit.status != FitStatus::converged || !end.fit.loglik) return no_maximum(to_string(end.fit.status) + ": " + end.fit.message);
   Maximisation out{*end.fit.loglik + log_prior(end.model, from.fitted.penalties), "", from};
   out.at.fitted.model.parameters = end.model.parameters;
   out.at.fitted.initial_states = end.initial_states;
@@ -110,21 +133,21 @@ Maximisation maximise_output_error(const FittedMethod& from, const Experiments& 
 std::optional<FilterStart> free_start(const Model& start, const EstimationTask& task, bool from_regression) {
   try {
     if (!follows_freely(start, task.experiments)) return std::nullopt;
-    if (start.free_parameters().empty()) return FilterStart{start, curve_penalties(start), {}, true};
+    if (start.free_parameters().empty()) return FilterStart{.model = start, .penalties = curve_penalties(start), .freely = true};
     OutputErrorStart options;
     options.thorough = false;
     options.from_regression = from_regression;
-    const FittedModel fitted = output_error({{}, start, curve_penalties(start), {}}, task.experiments, options);
+    const FittedModel fitted = output_error(at_own_values(start), task.experiments, options);
     if (!fitted.fit.usable()) return std::nullopt;
-    return FilterStart{fitted.model, curve_penalties(fitted.model), {}, true};
+    return FilterStart{.model = fitted.model, .penalties = curve_penalties(fitted.model), .freely = true};
   } catch (const RunError&) {
     return std::nullopt;
   }
 }
 
 /// The first parameter of the system, a number, that has the opposite sign of what the study gives; empty: none. Noise of differentiated
-/// channels takes away from what a regression finds, and what the model lacks may take away more than there was: a maximum beyond 0 is then
-/// nearer than the right one.
+/// channels draws what a regression finds towards 0, and what the model lacks may draw it beyond: a search from there ends at a maximum on
+/// the wrong side of 0.
 std::string changed_sign(const Model& given, const Model& found) {
   for (std::size_t k = 0; k < given.system->spec().constants.size(); ++k) {
     const Parameter& p = given.parameters[k];
@@ -176,7 +199,10 @@ Estimation run_filter_error(const EstimationTask& task) {
       result = std::move(again);
     }
   }
-  Estimation out{{estimators::filter_error.name, {std::move(result.fit), task.model, {}, {}}, {}, {}, {}}, std::move(result.estimate)};
+  Estimation out = estimation_by(estimators::filter_error);
+  out.at.fitted.fit = std::move(result.fit);
+  out.at.fitted.model = task.model;
+  out.filter = std::move(result.estimate);
   if (!out.filter) return out;
   out.at.fitted.model = out.filter->model;
   out.at.fitted.penalties = out.filter->penalties;
@@ -211,7 +237,7 @@ Maximisation maximise_filter_error(const FittedMethod& from, const Experiments& 
   options.use = from.use;
   options.verify = true;
   const FilterEstimate end = estimate_filter(from.fitted.model, from.fitted.penalties, experiments, options);
-  if (!end.converged) return {{}, to_string(FitStatus::not_converged) + ": " + end.message, {}};
+  if (!end.converged) return no_maximum(to_string(FitStatus::not_converged) + ": " + end.message);
   Maximisation out{end.objective, "", from};
   out.at.fitted.model.parameters = end.model.parameters;
   out.at.noise = end.noise;
@@ -219,10 +245,10 @@ Maximisation maximise_filter_error(const FittedMethod& from, const Experiments& 
 }
 
 constexpr std::array table{
-    Estimator{estimators::sliding_bin, run_sliding_bin, refit_sliding_bin, nullptr},
-    Estimator{estimators::equation_error, run_equation_error, refit_equation_error, nullptr},
-    Estimator{estimators::output_error, run_output_error, refit_output_error, maximise_output_error},
-    Estimator{estimators::filter_error, run_filter_error, refit_filter_error, maximise_filter_error},
+    Estimator{.info = estimators::sliding_bin, .run = run_sliding_bin, .refit = refit_sliding_bin, .maximise = nullptr},
+    Estimator{.info = estimators::equation_error, .run = run_equation_error, .refit = refit_equation_error, .maximise = nullptr},
+    Estimator{.info = estimators::output_error, .run = run_output_error, .refit = refit_output_error, .maximise = maximise_output_error},
+    Estimator{.info = estimators::filter_error, .run = run_filter_error, .refit = refit_filter_error, .maximise = maximise_filter_error},
 };
 
 /// What cannot be run, or not in time, has no maximum.
@@ -233,9 +259,9 @@ Maximisation maximise(const FittedMethod& from, const Experiments& experiments, 
     if (!out.objective && watch.spent()) out.why = watch.words();
     return out;
   } catch (const RunError& error) {
-    return {{}, error.what(), {}};
+    return no_maximum(error.what());
   } catch (const TimeLimitReached&) {
-    return {{}, watch.words(), {}};
+    return no_maximum(watch.words());
   }
 }
 

@@ -31,7 +31,7 @@ class Tracer {
     for (const Symbol& symbol : out) nodes.push_back(symbol.node());
     call = nullptr;
     for (std::size_t i = now.conditions.size(); i-- > answers.size();) {
-      std::vector<bool> other(now.answers.begin(), now.answers.begin() + static_cast<std::ptrdiff_t>(i));
+      std::vector<bool> other(now.answers.begin(), now.answers.begin() + i);
       other.push_back(false);
       const std::vector<int> otherwise = run(other);
       for (std::size_t k = 0; k < count_; ++k) nodes[k] = graph_.make(Op::select, now.conditions[i], nodes[k], otherwise[k]);

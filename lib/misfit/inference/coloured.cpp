@@ -163,7 +163,7 @@ class Sandwich {
   /// E[v vᵀ − r rᵀ] summed by lag: the residuals r of a fit are smaller than the noise v, and less correlated.
   LagProducts bias_correction(const Densities& density, const std::vector<Densities>& by_plain,
                               const std::vector<Densities>& by_covariance) const {
-    const auto half = static_cast<std::size_t>(size_ / 2 + 1);
+    const std::size_t half = size_ / 2 + 1;
     Densities Pi_R(half, Eigen::MatrixXcd::Zero(channels_, channels_)), S_Sigma_S = Pi_R;
     for (std::size_t s = 0; s < stretches_.size(); ++s) {
       for (std::size_t f = 0; f < half; ++f) {

@@ -63,7 +63,7 @@ double rate_of_data(const Model& model, const Signals& signals, const Reconstruc
 
 std::vector<double> part_of(const std::vector<double>& values, std::size_t first, std::size_t last) {
   if (values.size() < last) return values;  // an input that nobody needs has none
-  return {values.begin() + static_cast<std::ptrdiff_t>(first), values.begin() + static_cast<std::ptrdiff_t>(last)};
+  return {values.begin() + first, values.begin() + last};
 }
 
 Signals piece_of(const Signals& whole, std::size_t first, std::size_t last) {

@@ -69,7 +69,10 @@ LocalFit OwnSamples::at(double time) const {
   const double s = (time - t_[k]) / (t_[k + 1] - t_[k]);
   const LocalFit before = moved(fits_[k], time - t_[k]), after = moved(fits_[k + 1], time - t_[k + 1]);
   const auto between = [s](double a, double b) { return a + s * (b - a); };
-  return {between(before.value, after.value), between(before.slope, after.slope), between(before.curvature, after.curvature), true};
+  return {.value = between(before.value, after.value),
+          .slope = between(before.slope, after.slope),
+          .curvature = between(before.curvature, after.curvature),
+          .ok = true};
 }
 
 DensestRows at_densest(const Signals& signals) {

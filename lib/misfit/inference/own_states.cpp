@@ -183,7 +183,7 @@ void fill(const Memory& memory, const Recording& recording, OwnStates& out) {
   RowMatrix values(samples.size(), size);
   Eigen::MatrixXd known(samples.size(), beginning.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
+    const Eigen::Index row = k;
     values.row(row) = begun_at_rest.row(samples[k]);
     known.row(row) = regressors(recording, samples[k]).transpose();
   }

@@ -59,7 +59,7 @@ bool on_one_line(const std::vector<PlanePoint>& points, Vector2d PlanePoint::*wh
   if (points.size() > few) return false;
   for (std::size_t without = 0; without < all.size(); ++without) {
     std::vector<Vector2d> rest = all;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(without));
+    rest.erase(rest.begin() + without);
     if (flatness(rest) < least) return true;
   }
   return false;

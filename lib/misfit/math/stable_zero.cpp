@@ -66,7 +66,7 @@ Polynomial fit_polynomial(const WeightedPoints& points, Eigen::Index order, doub
   Eigen::MatrixXd A(n, order);
   Eigen::VectorXd b(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+    const std::size_t k = i;
     A.row(i) = p.basis(points.x[k]).transpose() / points.sigma[k];
     b(i) = points.value[k] / points.sigma[k];
   }

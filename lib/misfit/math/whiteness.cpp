@@ -111,7 +111,7 @@ WhitenessTest whiteness(const std::vector<double>& residuals, int first_lag, int
   const auto length = static_cast<double>(residuals.size());
   std::vector<std::size_t> lags;
   for (int lag = first_lag; lag <= test.last_lag; ++lag) {
-    const auto k = static_cast<std::size_t>(lag);
+    const std::size_t k = lag;
     const double rho = correlation(pairs[0], pairs[k], lag, length);
     if (!std::isfinite(rho)) continue;
     const double r = pairs[k].product / pairs[0].product;

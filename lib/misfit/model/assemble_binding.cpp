@@ -4,6 +4,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/assembler.h"
+#include "misfit/model/does_not_suit.h"
 #include "misfit/model/role_units.h"
 
 namespace misfit {
@@ -15,8 +16,8 @@ void Assembler::bind(std::size_t i) {
     if (request_.effects[j].name == request.name) throw InputError(request.where, "effect '" + shown(request.name) + "' is named twice");
   }
   if (std::find(system().includes.begin(), system().includes.end(), spec.key) != system().includes.end()) {
-    throw InputError(request.where, "effect '" + shown(request.name) + "': the equations of system '" + system().key + "' have '" +
-                                        spec.key + "' by themselves, it would count twice");
+    throw DoesNotSuit(request.where, "effect '" + shown(request.name) + "': the equations of system '" + system().key + "' have '" +
+                                         spec.key + "' by themselves, it would count twice");
   }
   BoundEffect bound;
   bound.effect = &effect(i);
@@ -68,13 +69,13 @@ void Assembler::bind_ports(const EffectRequest& request, const EffectSpec& spec,
         bound.ports.push_back(-1);
         continue;
       }
-      throw InputError(request.where, "effect '" + shown(request.name) + "': system '" + system().key + "' has no port '" + shown(target) +
-                                          "'" + suggest(target, port_names()));
+      throw DoesNotSuit(request.where, "effect '" + shown(request.name) + "': system '" + system().key + "' has no port '" + shown(target) +
+                                           "'" + suggest(target, port_names()));
     }
     check_unit(request, role, "port '" + shown(target) + "'", place->unit);
     if (!first && place->kind != bound.kind) {
-      throw InputError(request.where, "effect '" + shown(request.name) + "' cannot add to '" + shown(target) +
-                                          "' beside its other ports: they are of different kinds");
+      throw DoesNotSuit(request.where, "effect '" + shown(request.name) + "' cannot add to '" + shown(target) +
+                                           "' beside its other ports: they are of different kinds");
     }
     bound.kind = place->kind;
     first = false;
@@ -86,8 +87,8 @@ void Assembler::check_unit(const EffectRequest& request, const Role& role, const
   if (role.unit[0] == '*') return;  // a generic role takes any unit
   const std::string needed = bind_unit(role.unit, role_units_);
   if (!parse_unit(needed).same_dimension(parse_unit(unit))) {
-    throw InputError(request.where, "effect '" + shown(request.name) + "': role '" + shown(role.name) + "' needs [" + needed + "], " +
-                                        what + " has [" + unit + "]");
+    throw DoesNotSuit(request.where, "effect '" + shown(request.name) + "': role '" + shown(role.name) + "' needs [" + needed + "], " +
+                                         what + " has [" + unit + "]");
   }
 }
 
@@ -100,8 +101,8 @@ int Assembler::bind_quantity(const EffectRequest& request, const Role& role, Por
   }
   if (index < 0) {
     if (role.optional && !request.roles.contains(role.name)) return -1;
-    throw InputError(request.where, "effect '" + shown(request.name) + "': system '" + system().key + "' has no quantity '" +
-                                        shown(target) + "'" + suggest(target, quantity_names()));
+    throw DoesNotSuit(request.where, "effect '" + shown(request.name) + "': system '" + system().key + "' has no quantity '" +
+                                         shown(target) + "'" + suggest(target, quantity_names()));
   }
   check_order(request.where, "effect '" + shown(request.name) + "'", target, index, kind);
   check_unit(request, role, "quantity '" + shown(target) + "'", unit_of_quantity(index));
@@ -109,28 +110,27 @@ int Assembler::bind_quantity(const EffectRequest& request, const Role& role, Por
   return index;
 }
 
-/// Only of inputs is the past known.
 void Assembler::check_input(const EffectRequest& request, const std::string& target) const {
   if (model_.input_of_quantity(find_quantity(target)) >= 0) return;
   std::vector<std::string> inputs;
   for (const auto& input : system().inputs) inputs.push_back(input.name);
-  throw InputError(request.where, "effect '" + shown(request.name) + "' reads the past of an input, '" + shown(target) +
-                                      "' is none of system '" + system().key + "'" + suggest(target, inputs));
+  throw DoesNotSuit(request.where, "effect '" + shown(request.name) + "' reads the past of an input, '" + shown(target) +
+                                       "' is none of system '" + system().key + "'" + suggest(target, inputs));
 }
 
 void Assembler::check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const {
   if (kind == PortKind::quantity && index >= system().base_quantities) {
-    throw InputError(where, who + " changes a quantity and so cannot read '" + shown(target) + "', which depends on such changes");
+    throw DoesNotSuit(where, who + " changes a quantity and so cannot read '" + shown(target) + "', which depends on such changes");
   }
   if (kind != PortKind::sensor && index >= int_size(system().quantities)) {
-    throw InputError(where, who + " cannot read the predicted output '" + shown(target) + "': only effects on sensors can");
+    throw DoesNotSuit(where, who + " cannot read the predicted output '" + shown(target) + "': only effects on sensors can");
   }
 }
 
 int Assembler::bind_constant(const EffectRequest& request, const std::string& name) const {
   if (const int i = index_of(system().constants, name); i >= 0) return i;
-  throw InputError(request.where,
-                   "effect '" + shown(request.name) + "' needs '" + shown(name) + "', which system '" + system().key + "' does not have");
+  throw DoesNotSuit(request.where,
+                    "effect '" + shown(request.name) + "' needs '" + shown(name) + "', which system '" + system().key + "' does not have");
 }
 
 BoundCoefficient Assembler::bind_coefficient(const std::string& name, const CoefficientSpec& spec, const EffectRequest& request,

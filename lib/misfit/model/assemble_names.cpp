@@ -3,6 +3,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/assembler.h"
+#include "misfit/model/does_not_suit.h"
 #include "misfit/model/role_units.h"
 
 namespace misfit {
@@ -54,9 +55,9 @@ void Assembler::share_coefficients() {
       BoundEffect& user = model_.effects[i];
       const auto lent = owned_coefficient(coefficients[c].name);
       if (!lent) {
-        throw InputError(request_.effects[i].where,
-                         "effect '" + shown(user.name) + "' changes what another effect adds by its coefficient '" + coefficients[c].name +
-                             "', and no effect of the model has one" + suggest(coefficients[c].name, owned_names()));
+        throw DoesNotSuit(request_.effects[i].where,
+                          "effect '" + shown(user.name) + "' changes what another effect adds by its coefficient '" + coefficients[c].name +
+                              "', and no effect of the model has one" + suggest(coefficients[c].name, owned_names()));
       }
       if (lent->curve >= 0) {
         const Curve& curve = model_.curves[lent->curve];
@@ -87,7 +88,6 @@ std::vector<std::string> Assembler::owned_names() const {
   return names;
 }
 
-/// What the request calls the curve; its name in the model where nothing is requested of it.
 std::string Assembler::curve_in_request(const std::string& name) const {
   const auto other = other_names_.find(name);
   return !request_.curves.contains(name) && other != other_names_.end() && request_.curves.contains(other->second) ? other->second : name;

@@ -45,8 +45,9 @@ class Assembler {
   void share_coefficients();
   std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const;
   std::vector<std::string> owned_names() const;
-  /// What the study asks of a coefficient as a curve, else what its specification says; nullopt: a number.
+  /// What the request calls the curve; its name in the model where nothing is requested of it.
   std::string curve_in_request(const std::string& name) const;
+  /// What the study asks of a coefficient as a curve, else what its specification says; nullopt: a number.
   std::optional<CurveRequest> curve_request(const std::string& name, const CoefficientSpec& spec, const EffectRequest& by) const;
   void bind(std::size_t i);
   /// Unit of what each role stands for; "-" where an optional role is absent (a wrong name is reported when it is bound).
@@ -80,9 +81,10 @@ class Assembler {
   void bind_ports(const EffectRequest& request, const EffectSpec& spec, BoundEffect& bound) const;
   void check_unit(const EffectRequest& request, const Role& role, const std::string& what, const std::string& unit) const;
   int bind_quantity(const EffectRequest& request, const Role& role, PortKind kind) const;
+  /// Only the past of inputs is known.
+  void check_input(const EffectRequest& request, const std::string& target) const;
   /// Effects on quantity ports read base quantities only; only effects on sensors read predicted outputs
   /// (lib/misfit/README.md, 4.1).
-  void check_input(const EffectRequest& request, const std::string& target) const;
   void check_order(const Source& where, const std::string& who, const std::string& target, int index, PortKind kind) const;
   int find_quantity(const std::string& name) const;
   int find_quantity(const Role& role, const std::string& name) const;

@@ -17,7 +17,7 @@ using formula::Op;
 
 class Compiler {
  public:
-  explicit Compiler(Declaration declaration) : d_(std::move(declaration)), out_(std::make_shared<Compiled>()) {}
+  explicit Compiler(Declaration declaration) : declaration_(std::move(declaration)), out_(std::make_shared<Compiled>()) {}
 
   std::shared_ptr<const Compiled> run() {
     check_sizes();
@@ -27,19 +27,19 @@ class Compiler {
     build_outputs();
     check_parameters();
     describe_quantities();
-    make_tapes(*out_, all_quantity_nodes_, output_nodes_, d_.where);
-    out_->spec = std::move(d_.spec);
+    make_tapes(*out_, all_quantity_nodes_, output_nodes_, declaration_.where);
+    out_->spec = std::move(declaration_.spec);
     return out_;
   }
 
  private:
-  formula::Graph& g() { return out_->graph; }
-  SystemSpec& spec() { return d_.spec; }
+  formula::Graph& graph() { return out_->graph; }
+  SystemSpec& spec() { return declaration_.spec; }
 
   void check_sizes() {
     const auto limit = [&](std::size_t have, std::size_t most, const char* what) {
       if (have > most)
-        throw InputError(d_.where, std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
+        throw InputError(declaration_.where, std::to_string(have) + " " + what + "; at most " + std::to_string(most) + " are possible");
     };
     limit(spec().states.size(), kMaxStates, "states");
     limit(spec().inputs.size(), kMaxInputs, "inputs");
@@ -58,9 +58,12 @@ class Compiler {
     own_ports_ = int_size(spec().dynamic_ports);
     n.nf = own_ports_ + n.nx;
     for (const auto& state : spec().states)
-      spec().dynamic_ports.push_back({"d" + state.name + "/dt", rate_unit(state.unit), "added to the rate of " + state.name, state.name});
+      spec().dynamic_ports.push_back({.name = "d" + state.name + "/dt",
+                                      .unit = rate_unit(state.unit),
+                                      .doc = "added to the rate of " + state.name,
+                                      .conjugate = state.name});
     for (int i = 0; i < n.nx; ++i) state_nodes_.push_back(state_node(i));
-    for (int i = 0; i < n.nu; ++i) input_nodes_.push_back(g().add(g().leaf(n.u(i)), g().leaf(n.P(i))));
+    for (int i = 0; i < n.nu; ++i) input_nodes_.push_back(graph().add(graph().leaf(n.u(i)), graph().leaf(n.P(i))));
     quantity_nodes_.assign(spec().quantities.size(), unbuilt);
     note_names(spec().states);
     note_names(spec().inputs);
@@ -78,9 +81,9 @@ class Compiler {
   /// Formulas never see a state outside its range, not even inside a step.
   int state_node(int i) {
     const StateSpec& state = spec().states[i];
-    int node = g().leaf(out_->leaves.x(i));
-    if (std::isfinite(state.lower)) node = g().make(Op::max, node, g().constant(state.lower));
-    if (std::isfinite(state.upper)) node = g().make(Op::min, node, g().constant(state.upper));
+    int node = graph().leaf(out_->leaves.x(i));
+    if (std::isfinite(state.lower)) node = graph().make(Op::max, node, graph().constant(state.lower));
+    if (std::isfinite(state.upper)) node = graph().make(Op::min, node, graph().constant(state.upper));
     return node;
   }
 
@@ -92,18 +95,18 @@ class Compiler {
 
   std::optional<Meaning> find(const std::string& name) {
     const auto at = [](const auto& list, int i) -> const auto& { return list[i]; };
-    if (name == "t") return Meaning{g().leaf(out_->leaves.t()), formula::measure_of("s")};
+    if (name == "t") return Meaning{graph().leaf(out_->leaves.t()), formula::measure_of("s")};
     if (const int i = index_of(spec().states, name); i >= 0)
       return Meaning{at(state_nodes_, i), formula::measure_of(at(spec().states, i).unit)};
     if (const int i = index_of(spec().inputs, name); i >= 0)
       return Meaning{at(input_nodes_, i), formula::measure_of(at(spec().inputs, i).unit)};
     if (const int i = index_of(spec().constants, name); i >= 0)
-      return Meaning{g().leaf(out_->leaves.k(i)), formula::measure_of(at(spec().constants, i).unit)};
+      return Meaning{graph().leaf(out_->leaves.k(i)), formula::measure_of(at(spec().constants, i).unit)};
     if (const int i = index_of(spec().quantities, name); i >= 0)
       return Meaning{quantity_node(i), formula::measure_of(at(spec().quantities, i).unit)};
     const int port = own_port(name);
     if (port < 0) return std::nullopt;
-    return Meaning{g().leaf(out_->leaves.F(port)), formula::measure_of(at(spec().dynamic_ports, port).unit)};
+    return Meaning{graph().leaf(out_->leaves.F(port)), formula::measure_of(at(spec().dynamic_ports, port).unit)};
   }
 
   int build(const Formula& f, bool in_equation) {
@@ -116,7 +119,7 @@ class Compiler {
     next_origin_ += int_size(f.syntax.nodes);
     out_->texts.push_back(f.syntax);
     out_->first_origin.push_back(origin);
-    const Meaning made = formula::build(f.syntax, names, g(), origin);
+    const Meaning made = formula::build(f.syntax, names, graph(), origin);
     formula::check_unit(f.syntax, made, f.measure, f.syntax.source.of);
     return made.node;
   }
@@ -125,11 +128,11 @@ class Compiler {
   int quantity_node(int i) {
     int& node = quantity_nodes_[i];
     if (node == in_work)
-      throw InputError(d_.quantities[i].syntax.source.where, "quantity " + spec().quantities[i].name + " depends on itself");
+      throw InputError(declaration_.quantities[i].syntax.source.where, "quantity " + spec().quantities[i].name + " depends on itself");
     if (node == unbuilt) {
       node = in_work;
-      const int own = build(d_.quantities[i], false);
-      quantity_nodes_[i] = g().add(own, g().leaf(out_->leaves.P(out_->leaves.nu + i)));
+      const int own = build(declaration_.quantities[i], false);
+      quantity_nodes_[i] = graph().add(own, graph().leaf(out_->leaves.P(out_->leaves.nu + i)));
     }
     return quantity_nodes_[i];
   }
@@ -141,12 +144,12 @@ class Compiler {
     const Leaves& n = out_->leaves;
     auto& states = spec().states;
     for (int j = 0; j < int_size(states); ++j) {
-      const int node = build(d_.equations[j], true);
+      const int node = build(declaration_.equations[j], true);
       const int same = place_of(state_nodes_, node);
       kinematic_.push_back(same >= 0 && same != j);
       if (kinematic_.back() && states[same].rate_of < 0) states[same].rate_of = j;
       equation_nodes_.push_back(node);
-      out_->rate_nodes.push_back(g().add(node, g().leaf(n.F(own_ports_ + j))));
+      out_->rate_nodes.push_back(graph().add(node, graph().leaf(n.F(own_ports_ + j))));
       note_inputs(node);
     }
     check_rates();
@@ -160,7 +163,7 @@ class Compiler {
     for (std::size_t i = 0; i < states.size(); ++i) {
       const int of = states[i].rate_of;
       if (of < 0 || equation_nodes_[of] == state_nodes_[i]) continue;
-      throw InputError(d_.equations[of].syntax.source.where,
+      throw InputError(declaration_.equations[of].syntax.source.where,
                        "the equation of '" + shown(states[of].name) + "' is not '" + shown(states[i].name) +
                            "', which says that it is its rate: " + "leave the equation out, or take rate_of out of '" +
                            shown(states[i].name) + "'");
@@ -176,16 +179,16 @@ class Compiler {
   std::vector<std::string> inputs_of(int node) {
     const Leaves& n = out_->leaves;
     std::vector<std::string> names;
-    for (int leaf : g().leaves_of(node)) {
+    for (int leaf : graph().leaves_of(node)) {
       if (leaf >= n.u(0) && leaf < n.t()) names.push_back(spec().inputs[leaf - n.u(0)].name);
     }
     return names;
   }
 
-  /// What an output observes is said of the system without effects.
+  /// Which state an output observes is found without effects: what they add to the quantities is 0.
   void build_outputs() {
-    for (int o = 0; o < int_size(d_.outputs); ++o) {
-      const int node = build(d_.outputs[o], false), plain = without_quantity_ports(node);
+    for (int o = 0; o < int_size(declaration_.outputs); ++o) {
+      const int node = build(declaration_.outputs[o], false), plain = without_quantity_ports(node);
       if (const int same = place_of(state_nodes_, plain); same >= 0) spec().outputs[o].observes = same;
       output_nodes_.push_back(node);
       note_inputs(plain);
@@ -195,7 +198,7 @@ class Compiler {
 
   int without_quantity_ports(int node) {
     const Leaves& n = out_->leaves;
-    for (int i = 0; i < n.np; ++i) node = g().substitute(node, n.P(i), g().constant(0.0));
+    for (int i = 0; i < n.np; ++i) node = graph().substitute(node, n.P(i), graph().constant(0.0));
     return node;
   }
 
@@ -204,20 +207,20 @@ class Compiler {
     const Leaves& n = out_->leaves;
     if (spec().outputs[output].observes >= 0) return;
     int state = -1;
-    for (int leaf : g().leaves_of(node)) {
+    for (int leaf : graph().leaves_of(node)) {
       if (leaf >= n.k(0) && leaf < n.P(0)) continue;
       if (state >= 0 || leaf >= n.nx) return;
       state = leaf;
     }
     if (state < 0) return;
-    const int slope = g().derivatives(node, {g().leaf(state)}).front();
-    if (g().is(slope, 0.0) || uses(slope, state)) return;  // steps of the state, or a curve
+    const int slope = graph().derivatives(node, {graph().leaf(state)}).front();
+    if (graph().is(slope, 0.0) || uses(slope, state)) return;  // steps of the state, or a curve
     out_->readable.emplace_back(output, state);
     spec().readable_states.push_back(state);
   }
 
   bool uses(int node, int leaf) {
-    const auto all = g().leaves_of(node);
+    const auto all = graph().leaves_of(node);
     return std::find(all.begin(), all.end(), leaf) != all.end();
   }
 
@@ -230,11 +233,12 @@ class Compiler {
       };
       const bool moves = used_by(equation_nodes_) || used_by(quantity_nodes_);
       if (!moves && !used_by(output_nodes_))
-        throw InputError(d_.where, "nothing depends on parameter '" + shown(constant.name) + "': use it in a formula, or take it out");
+        throw InputError(declaration_.where,
+                         "nothing depends on parameter '" + shown(constant.name) + "': use it in a formula, or take it out");
       constant.of_sensor = !moves;
       constant.strength = moves;
       for (int node : equation_nodes_) {
-        const std::vector<int> slope = g().derivatives(node, {g().leaf(leaf)});
+        const std::vector<int> slope = graph().derivatives(node, {graph().leaf(leaf)});
         constant.strength = constant.strength && !uses(slope.front(), leaf);
       }
     }
@@ -245,30 +249,37 @@ class Compiler {
     std::vector<QuantitySpec> all;
     for (int i = 0; i < n.nx; ++i) {
       const StateSpec& state = spec().states[i];
-      add_quantity({state.name, state.unit, "state", {}, true}, state_nodes_[i], all);
+      add_quantity({.name = state.name, .unit = state.unit, .doc = "state", .carries_sign = true}, state_nodes_[i], all);
     }
     for (int i = 0; i < n.nu; ++i) {
       const InputSpec& input = spec().inputs[i];
-      add_quantity({as_recorded(input.name), input.unit, "input as recorded", {input.name}, true, false}, g().leaf(n.u(i)), all);
+      add_quantity({.name = as_recorded(input.name),
+                    .unit = input.unit,
+                    .doc = "input as recorded",
+                    .inputs = {input.name},
+                    .carries_sign = true,
+                    .explains = false},
+                   graph().leaf(n.u(i)), all);
     }
     spec().base_quantities = int_size(all);
     for (int i = 0; i < n.nu; ++i) {
       const InputSpec& input = spec().inputs[i];
-      add_quantity({input.name, input.unit, "input", {input.name}, true}, input_nodes_[i], all);
-      spec().quantity_ports.push_back({input.name, input.unit, "added to the input", input.name});
+      add_quantity({.name = input.name, .unit = input.unit, .doc = "input", .inputs = {input.name}, .carries_sign = true}, input_nodes_[i],
+                   all);
+      spec().quantity_ports.push_back({.name = input.name, .unit = input.unit, .doc = "added to the input", .conjugate = input.name});
     }
     for (std::size_t i = 0; i < spec().quantities.size(); ++i) {
       QuantitySpec q = spec().quantities[i];
       q.inputs = inputs_of(quantity_nodes_[i]);
-      spec().quantity_ports.push_back({q.name, q.unit, "added to the quantity", q.name});
+      spec().quantity_ports.push_back({.name = q.name, .unit = q.unit, .doc = "added to the quantity", .conjugate = q.name});
       add_quantity(q, quantity_nodes_[i], all);
     }
     spec().quantities = std::move(all);
     note_namesakes();
     note_ports_in_outputs();
     if (int_size(spec().quantities) + int_size(spec().outputs) > kMaxQuantities)
-      throw InputError(d_.where, "states, inputs, quantities and outputs are together too many");
-    set_roles(d_, own_ports_);
+      throw InputError(declaration_.where, "states, inputs, quantities and outputs are together too many");
+    set_roles(declaration_, own_ports_);
   }
   void note_namesakes() {
     for (int o = 0; o < int_size(spec().outputs); ++o) {
@@ -289,7 +300,7 @@ class Compiler {
   }
 
   static constexpr int unbuilt = -1, in_work = -2;
-  Declaration d_;
+  Declaration declaration_;
   std::shared_ptr<Compiled> out_;
   int own_ports_ = 0, next_origin_ = 0;
   std::vector<std::string> names_;

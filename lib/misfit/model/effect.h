@@ -282,12 +282,14 @@ class EffectOf final : public Effect {
   static constexpr int NK = constants();
   static constexpr int NZ = states();
   static constexpr int NO = NP + NZ;
-  static_assert(NQ + NC + NZ + NK <= kMaxWidth, "an effect reads at most kMaxWidth numbers");
-  static_assert(index_names::quantities_match<E>(), "enum Quantity must have the names of `quantities`, in their order");
-  static_assert(index_names::ports_match<E>(), "enum Port must have the names of `ports`, in their order");
-  static_assert(index_names::coefficients_match<E>(), "enum Coefficient must have the names of `coefficients`, in their order");
-  static_assert(index_names::constants_match<E>(), "enum Constant must have the names of `constants`, in their order");
-  static_assert(index_names::states_match<E>(), "enum State must have the names of `states`, in their order");
+  static_assert(
+      requires { E::examples(); }, "add a worked example to the effect's struct: static std::vector<Example> examples()");
+  static_assert(NQ + NC + NZ + NK <= kMaxWidth, "an effect reads at most kMaxWidth numbers (model/limits.h): make two effects of it");
+  static_assert(index_names::quantities_match<E>(), "give enum Quantity the names of `quantities`, in their order");
+  static_assert(index_names::ports_match<E>(), "give enum Port the names of `ports`, in their order");
+  static_assert(index_names::coefficients_match<E>(), "give enum Coefficient the names of `coefficients`, in their order");
+  static_assert(index_names::constants_match<E>(), "give enum Constant the names of `constants`, in their order");
+  static_assert(index_names::states_match<E>(), "give enum State the names of `states`, in their order");
 
   template <class T, class K>
   static void call(const Reads<T, K>& in, T* out) {

@@ -40,12 +40,14 @@ Registry Registry::over(const Registry& base) {
 
 void Registry::add(std::unique_ptr<Effect> effect) {
   const std::string key = effect->spec().key;
-  if (!effects_.emplace(key, std::move(effect)).second) throw std::logic_error("effect '" + shown(key) + "' registered twice");
+  if (!effects_.emplace(key, std::move(effect)).second)
+    throw std::logic_error("effect '" + shown(key) + "' is registered twice: rename one of its files, whose stem is the key");
 }
 
 void Registry::add(SystemType system) {
   const std::string key = system.key;
-  if (!systems_.emplace(key, std::move(system)).second) throw std::logic_error("system '" + shown(key) + "' registered twice");
+  if (!systems_.emplace(key, std::move(system)).second)
+    throw std::logic_error("system '" + shown(key) + "' is registered twice: rename one of its files, whose stem is the key");
 }
 
 const Effect& Registry::effect(const std::string& key, const Source& where) const {

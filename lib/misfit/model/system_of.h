@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "misfit/math/scalar.h"
+#include "misfit/model/limits.h"
 #include "misfit/model/registry.h"
 
 // Left to itself, g++ calls a function for every sum of two Jets: a third of the time of a filter pass. Under the sanitizers a flattened
@@ -35,6 +36,16 @@ namespace misfit {
 template <class S>
 class SystemOf final : public System {
  public:
+  static_assert(S::NX <= kMaxStates && S::NU <= kMaxInputs && S::NQ <= kMaxQuantities && S::NK <= kMaxConstants && S::NY <= kMaxOutputs &&
+                    S::NP <= kMaxPorts && S::NF <= kMaxPorts,
+                "the system is larger than model/limits.h allows: split it, or raise the limit there");
+  static_assert(
+      requires(const S& s, const double* k) {
+        s.spec();
+        s.derived_curves(k);
+        S::flags();
+      }, "the system's struct needs spec(), derived_curves(k) and static flags(), as in models/parachute/parachute_planar.cpp");
+
   explicit SystemOf(S system) : system_(std::move(system)), spec_(system_.spec()) {}
 
   [[nodiscard]] const SystemSpec& spec() const override { return spec_; }

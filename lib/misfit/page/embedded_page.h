@@ -25,9 +25,9 @@ struct EmbeddedPage {
 /// force of the last model find room.
 [[nodiscard]] std::string embedded_answers(const EmbeddedPage& page, std::size_t most);
 
-/// The page of `misfit open` without a server, as markup of at most so many bytes for the end of the body of report.html: template, style
-/// sheet, embedded_answers(), packed, and script. Without scripts, and in print, none of it is seen. The page says of a view that found no
-/// room that `misfit open` shows it. Empty where embedded_answers() is.
+/// The page of `misfit open` without a server, as markup of at most `most` bytes for the end of the body of report.html: template, style
+/// sheet, compressed embedded_answers(), and script. Where scripts are off, and in print, none of it is seen. Of a view that found no room
+/// the page says that `misfit open` shows it. Empty where embedded_answers() is.
 [[nodiscard]] std::string embedded_page(const EmbeddedPage& page, std::size_t most);
 
 }  // namespace misfit::page

@@ -123,7 +123,9 @@ RecordingTable recording_table(const std::filesystem::path& path, const Recordin
   for (const Column& c : table.columns) {
     const std::string header =
         out.table.columns.empty() ? "t[s]" : short_name(c.name, wanted) + "[" + (c.unit.empty() ? "-" : c.unit) + "]";
-    out.table.columns.push_back({header, c.values, 0, 0, "", false, ""});
+    LooseColumn& column = out.table.columns.emplace_back();
+    column.header = header;
+    column.values = c.values;
   }
   out.table.line.resize(table.rows());
   std::iota(out.table.line.begin(), out.table.line.end(), 1);

@@ -51,10 +51,10 @@ struct OwnX {
 /// One pair of axes; the panels of a figure stand above each other and share x.
 struct Panel {
   std::string y_label, y_unit;
-  std::vector<Series> series;
-  std::optional<std::array<double, 2>> y_range;  ///< absent: from the data
-  double y_step = 0.0;                           ///< distance of the marks on the y axis; 0: chosen
-  double height = 300.0;                         ///< of the axes [px]
+  std::vector<Series> series = {};
+  std::optional<std::array<double, 2>> y_range = {};  ///< absent: from the data
+  double y_step = 0.0;                                ///< distance of the marks on the y axis; 0: chosen
+  double height = 300.0;                              ///< of the axes [px]
   bool zero_line = false;
   std::vector<Mark> y_marks = {};   ///< names instead of numbers
   std::string ground = {};          ///< colour behind the series where they leave it free; empty: paper

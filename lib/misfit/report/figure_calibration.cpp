@@ -55,7 +55,7 @@ Figure calibration_figure(const Calibration& calibration) {
       "Image coordinates of the three reference points of the static rig: measured (circles), predicted by the calibrated camera (lines).";
   for (const char coordinate : {'z', 'y'}) {
     if (!has_coordinate(calibration, coordinate) && coordinate == 'y') continue;
-    Panel panel{fmt::format("P_{}", coordinate), "px", {}, std::nullopt, 0.0, coordinate == 'z' ? 260.0 : 170.0, false};
+    Panel panel{.y_label = fmt::format("P_{}", coordinate), .y_unit = "px", .height = coordinate == 'z' ? 260.0 : 170.0};
     for (int point = 1; point <= 3; ++point) {
       const std::string colour = palette(point - 1);
       Series line{fmt::format("predicted_{}{}", point, coordinate), "", Style::line, colour, {}, {}, {}, {}, 1.4};
@@ -76,7 +76,7 @@ Figure calibration_residual_figure(const Calibration& calibration) {
       calibration.rms_px);
   for (const char coordinate : {'z', 'y'}) {
     if (!has_coordinate(calibration, coordinate) && coordinate == 'y') continue;
-    Panel panel{fmt::format("residual P_{}", coordinate), "px", {}, std::nullopt, 0.0, 190.0, true};
+    Panel panel{.y_label = fmt::format("residual P_{}", coordinate), .y_unit = "px", .height = 190.0, .zero_line = true};
     for (int point = 1; point <= 3; ++point) {
       Series s{fmt::format("residual_{}{}", point, coordinate),
                fmt::format("point {}", point),

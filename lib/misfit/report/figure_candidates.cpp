@@ -76,7 +76,7 @@ Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t m
   }
   if (count < candidates.size()) figure.notes.push_back(counted(candidates.size() - count, "more is", "more are") + " in candidates.json.");
   const auto beyond = [](const Candidate& c) { return !(c.p_value > std::pow(10.0, -longest)); };
-  if (std::any_of(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count), beyond))
+  if (std::any_of(candidates.begin(), candidates.begin() + count, beyond))
     figure.notes.push_back(fmt::format("p below 1e-{:.0f} is drawn as 1e-{:.0f}.", longest, longest));
   return figure;
 }

@@ -83,8 +83,8 @@ Figure figure_of_map(const ForceMap& map) {
   Figure figure;
   figure.x_label = map.quantity;
   figure.x_unit = display_level_unit(map.quantity_unit);
-  Panel panel{map.port, display_unit(map.port_unit), {}, std::nullopt, 0.0, 230.0, true, {}};
-  Panel counts{"samples, weighted", "-", {}, std::nullopt, 0.0, 80.0, false, {}};
+  Panel panel{.y_label = map.port, .y_unit = display_unit(map.port_unit), .height = 230.0, .zero_line = true};
+  Panel counts{.y_label = "samples, weighted", .y_unit = "-", .height = 80.0};
   const std::vector<double> x = display_levels(map.x, map.quantity_unit);
   Series samples{"samples", "", Style::boxes, grey, x, map.count, {}, {}};
   set_edges(half_steps(x), 0.9, samples);
@@ -143,7 +143,7 @@ Figure pair_figure(const PairMap& map) {
   figure.x_unit = display_level_unit(map.unit_x);
   figure.z_label = "force over its sigma";
   figure.z_unit = std::string("-");
-  Panel panel{map.quantity_y, display_level_unit(map.unit_y), {}, std::nullopt, 0.0, 380.0, false, {}};
+  Panel panel{.y_label = map.quantity_y, .y_unit = display_level_unit(map.unit_y), .height = 380.0};
   Series cells{"force", "", Style::cells, black, {}, {}, {}, {}};
   const std::vector<double> x = display_levels(map.x, map.unit_x), y = display_levels(map.y, map.unit_y);
   const std::vector<double> half_x = half_steps(x), half_y = half_steps(y);
@@ -173,7 +173,7 @@ Figure innovation_figure(const std::vector<WhitenessReport>& whiteness) {
   figure.x_label = "lag";
   figure.x_unit = "samples";
   for (const WhitenessReport& w : whiteness) {
-    Panel panel{w.channel, "-", {}, std::nullopt, 0.0, 150.0, true, {}};
+    Panel panel{.y_label = w.channel, .y_unit = "-", .height = 150.0, .zero_line = true};
     const std::string key = as_key(w.experiment + "_" + w.channel);
     Series rho{
         key, fmt::format("{} of {}, Ljung-Box {}", w.channel, w.experiment, p_equals(w.ljung_box_p)), Style::boxes, palette(0), {}, {}, {},
@@ -203,7 +203,7 @@ Figure periodogram_figure(const std::vector<WhitenessReport>& whiteness) {
       "jump indicates a spectral line, a smooth departure coloured innovations.";
   figure.x_label = "frequency";
   figure.x_unit = "Hz";
-  Panel panel{"cumulative power", "-", {}, std::array<double, 2>{0.0, 1.0}, 0.25, 320.0, false, {}};
+  Panel panel{.y_label = "cumulative power", .y_unit = "-", .y_range = std::array<double, 2>{0.0, 1.0}, .y_step = 0.25, .height = 320.0};
   std::set<std::pair<std::size_t, double>> bands;
   for (std::size_t k = 0; k < whiteness.size(); ++k) {
     const WhitenessReport& w = whiteness[k];
@@ -248,7 +248,7 @@ Figure nis_figure(const NisSeries& series) {
       100.0 * series.outside);
   figure.x_label = "time";
   figure.x_unit = std::string("s");
-  Panel panel{"NIS", "-", {}, std::nullopt, 0.0, 220.0, false, {}};
+  Panel panel{.y_label = "NIS", .y_unit = "-", .height = 220.0};
   if (!series.t.empty()) {
     const std::vector<double> ends = {series.t.front(), series.t.back()};
     panel.series.push_back(
@@ -273,7 +273,7 @@ Figure missing_force_figure(const MissingForce& missing, const std::optional<Int
   const std::vector<double> t = cut(missing.t);
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
     const std::string key = as_key(missing.ports[p]);
-    Panel panel{missing.ports[p], display_unit(missing.port_units[p]), {}, std::nullopt, 0.0, 180.0, true, {}};
+    Panel panel{.y_label = missing.ports[p], .y_unit = display_unit(missing.port_units[p]), .height = 180.0, .zero_line = true};
     const std::vector<double> y = display_values(cut(missing.force[p]), missing.port_units[p]);
     const std::vector<double> sigma = display_values(cut(missing.sigma[p]), missing.port_units[p]);
     Series band{key + "_band", "", Style::band, palette(p), t, {}, {}, {}};
@@ -332,7 +332,7 @@ Figure missing_force_by_figure(const MissingForce& missing, const std::string& q
   const std::vector<double> x =
       q < missing.quantities.size() ? display_levels(missing.values[q], unit) : std::vector<double>(missing.t.size(), nan);
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
-    Panel panel{missing.ports[p], display_unit(missing.port_units[p]), {}, std::nullopt, 0.0, 200.0, true, {}};
+    Panel panel{.y_label = missing.ports[p], .y_unit = display_unit(missing.port_units[p]), .height = 200.0, .zero_line = true};
     panel.series = {
         {as_key(missing.ports[p]), "", Style::points, palette(p), x, display_values(missing.force[p], missing.port_units[p]), {}, {}}};
     figure.panels.push_back(std::move(panel));

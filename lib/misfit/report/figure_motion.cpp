@@ -65,7 +65,7 @@ std::vector<double> normalised_residuals(const ChannelPrediction& c) {
 }
 
 Panel motion_panel(const ChannelPrediction& c) {
-  Panel panel{c.channel, display_level_unit(c.unit), {}, std::nullopt, 0.0, 270.0, false};
+  Panel panel{.y_label = c.channel, .y_unit = display_level_unit(c.unit), .height = 270.0};
   std::vector<bool> estimation = c.held_out;
   estimation.flip();
   panel.series.push_back(
@@ -117,7 +117,11 @@ std::optional<std::array<double, 2>> range_of_settled(const std::vector<double>&
 
 Panel residual_panel(const ChannelPrediction& c) {
   const std::vector<double> sigma = display_values(c.sigma, c.unit);
-  Panel panel{"residual", display_unit(c.unit), {}, range_of_settled(display_values(residuals(c), c.unit), sigma), 0.0, 130.0, true};
+  Panel panel{.y_label = "residual",
+              .y_unit = display_unit(c.unit),
+              .y_range = range_of_settled(display_values(residuals(c), c.unit), sigma),
+              .height = 130.0,
+              .zero_line = true};
   panel.series.push_back({"sigma", "± 1 sigma of the prediction", Style::band, palette(0), c.t, {}, scaled(sigma, -1.0), sigma});
   panel.series.push_back({"residual", "measured − predicted", Style::points, black, c.t, display_values(residuals(c), c.unit), {}, {}});
   return panel;
@@ -197,7 +201,7 @@ Figure autocorrelation_figure(const std::string& method, const ChannelPrediction
   figure.caption = "For a correct model the residuals are white: 95 % of the lags stay inside the band.";
   figure.x_label = "lag";
   figure.x_unit = "samples";
-  Panel panel{"autocorrelation", "-", {}, std::nullopt, 0.0, 220.0, true};
+  Panel panel{.y_label = "autocorrelation", .y_unit = "-", .height = 220.0, .zero_line = true};
   Series rho{"residual", "residuals / sigma", Style::boxes, palette(0), {}, {}, {}, {}};
   for (std::size_t lag = 1; lag <= max_lag && static_cast<double>(lag) < count; ++lag) {
     const auto x = static_cast<double>(lag);
@@ -228,7 +232,7 @@ Figure residual_histogram_figure(const std::string& method, const ChannelPredict
       "gives: heavy tails indicate outliers, another width a wrong sigma.";
   figure.x_label = "residual / sigma";
   figure.x_unit = std::string("-");
-  Panel panel{"density", "-", {}, std::nullopt, 0.0, 220.0, false};
+  Panel panel{.y_label = "density", .y_unit = "-", .height = 220.0};
   panel.series = {density_boxes(r), standard_normal()};
   figure.panels.push_back(std::move(panel));
   if (beyond > 0) figure.notes.push_back(fmt::format("{} of {} residuals are beyond ± {} sigma", beyond, r.size(), kHistogramEnd));

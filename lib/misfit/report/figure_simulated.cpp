@@ -44,7 +44,7 @@ Panel panel_of(const MotionSeries& series, const MotionGroup& group) {
     points.y.push_back(drawn(n.measured));
   }
   const std::string unit = levels ? display_level_unit(group.unit) : display_unit(group.unit);
-  Panel panel{series.name, unit, {std::move(band), std::move(middle), std::move(measured)}, std::nullopt, 0.0, 170.0, false};
+  Panel panel{.y_label = series.name, .y_unit = unit, .series = {std::move(band), std::move(middle), std::move(measured)}, .height = 170.0};
   if (!outside.x.empty()) panel.series.push_back(std::move(outside));
   panel.zero_line = group.name == "autocorrelation";
   return panel;

@@ -31,7 +31,7 @@ double lowest(const std::vector<double>& values) {
 }
 
 Panel place_panel(const char* label, const Track& track, const std::vector<double>& values, std::size_t colour) {
-  Panel panel{label, "px", {}, std::nullopt, 0.0, 180.0, false};
+  Panel panel{.y_label = label, .y_unit = "px", .height = 180.0};
   panel.series.push_back({label, "", Style::line, palette(colour), track.t, values, {}, {}, 0.8});
   Series lost = losses(track, lowest(values));
   if (!lost.x.empty()) panel.series.push_back(std::move(lost));
@@ -49,7 +49,7 @@ Figure track_figure(const std::string& experiment, const Track& track) {
       "where it is known: the standard deviation of one coordinate at each sample.";
   figure.x_label = "time";
   figure.x_unit = std::string("s");
-  Panel sigma{"sigma", "px", {}, std::nullopt, 0.0, 110.0, false};
+  Panel sigma{.y_label = "sigma", .y_unit = "px", .height = 110.0};
   sigma.series.push_back({"sigma", "", Style::points, palette(2), track.t, track.sigma, {}, {}});
   figure.panels = {place_panel("P_y", track, track.P_y, 0), place_panel("P_z", track, track.P_z, 0)};
   const bool known = std::any_of(track.sigma.begin(), track.sigma.end(), [](double v) { return std::isfinite(v); });

@@ -16,7 +16,8 @@ namespace misfit::report {
 /// dotted, the parabola of the fit's sigma. Angles in degrees.
 [[nodiscard]] Figure profile_figure(const LikelihoodProfile& profile);
 
-/// How far below the fit's maximum each random start ended, in order; those above it below the line of 0. Logarithmic beyond a drop of 1.
+/// How far below the fit's maximum each random start ended, in order; a start that ended above it lies below the line of 0. Logarithmic
+/// beyond a drop of 1.
 [[nodiscard]] Figure starts_figure(const MultiStart& starts);
 
 /// All of them: a figure per curve, then one per profile and one per method's starts.

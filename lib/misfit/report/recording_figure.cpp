@@ -55,7 +55,7 @@ Figure recording_figure(const RecordingSurvey& survey, std::size_t part, const s
   for (std::size_t i = 1; i < table.columns.size(); ++i) {
     const Column& column = table.columns[i];
     const std::string unit = column.unit.empty() ? "-" : display_unit(column.unit);
-    Panel panel{column.name + " (" + use_of(survey, column.name) + ")", unit, {}, std::nullopt, 0.0, 170.0, false};
+    Panel panel{.y_label = column.name + " (" + use_of(survey, column.name) + ")", .y_unit = unit, .height = 170.0};
     panel.series.push_back(curve(column, t, survey.step, i - 1, all));
     figure.panels.push_back(std::move(panel));
   }

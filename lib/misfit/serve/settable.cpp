@@ -65,7 +65,7 @@ Settable settable_of(const Session& session) {
   const Model model = provisional_model(request, session.registry);
   Settable out;
   for (const misfit::Parameter& p : model.parameters) {
-    if (p.curve < 0) out.parameters.push_back({p.name, p.unit, p.free, in_display_unit(p.value, p.unit)});
+    if (p.curve < 0) out.parameters.push_back({.name = p.name, .unit = p.unit, .free = p.free, .value = in_display_unit(p.value, p.unit)});
   }
   const auto names = parameter_names(request, session.registry);
   for (const misfit::Curve& c : model.curves) {

@@ -210,6 +210,8 @@ Blocks blocks_of(const Discovery& d) {
   out.list({why, Tone::plain, {5, "candidates.json"}});
   if (!d.tried.empty()) out.subheading("Effect families tested");
   out.list({d.tried, Tone::plain, {0, "discovery.json"}});
+  if (!d.not_tried.empty()) out.subheading("Effects that could not be tried");
+  out.list({not_tried_in_words(d)});
   return out;
 }
 

@@ -97,7 +97,7 @@ SampledOutputs::SampledOutputs(Stepper& stepper)
     : evaluator_(stepper.evaluator()), n_(stepper.states()), ny_(evaluator_.outputs()), width_(n_ + evaluator_.columns()) {
   rows_.assign(evaluator_.sensor_ports() * kRowStride, 0.0);
   if (!evaluator_.shifts_time()) return;
-  const auto states = static_cast<std::size_t>(n_), width = static_cast<std::size_t>(width_);
+  const std::size_t states = n_, width = width_;
   D_.assign(states * kRowStride, 0.0);
   moved_rows_ = rows_;
   shift_rows_.assign(ny_ * width, 0.0);

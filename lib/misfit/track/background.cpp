@@ -72,7 +72,7 @@ std::array<float, 3> along_row(const LightGain& q, double y) {
 }
 
 std::uint8_t median_byte(std::vector<std::uint8_t>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + values.size() / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
@@ -200,7 +200,7 @@ std::array<LightGain, 3> Background::light_of(const ColourImage& frame) const {
 std::vector<float> Background::differences(const ColourImage& frame) const { return differences(frame, light_of(frame)); }
 
 std::vector<float> Background::differences(const ColourImage& frame, const std::array<LightGain, 3>& light) const {
-  const auto width = static_cast<std::size_t>(width_);
+  const std::size_t width = width_;
   std::vector<float> out(width * height_), x(width);
   for (int i = 0; i < width_; ++i) x[i] = static_cast<float>(relative(i, width_));
   for (int r = 0; r < height_; ++r) {

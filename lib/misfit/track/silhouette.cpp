@@ -143,7 +143,7 @@ double contrast_of(const std::vector<ColourImage>& samples, const Background& ba
   std::vector<double> values;
   for (const Seen& s : seen) {
     const std::vector<float> d = background.differences(samples[s.frame]);
-    const auto width = static_cast<std::size_t>(background.width());
+    const std::size_t width = background.width();
     const auto r = static_cast<std::size_t>(s.blob.at.row), c = static_cast<std::size_t>(s.blob.at.column);
     const auto reach = static_cast<std::size_t>(0.3 * std::min(s.blob.width(), s.blob.height()));
     for (std::size_t j = r - std::min(r, reach); j <= r + reach && j < d.size() / width; ++j)

@@ -117,7 +117,15 @@ Bootstrap BlockBootstrap::summary(const std::vector<ChainResult>& results) const
   std::size_t number = 0;
   const auto add = [&](const std::string& name, const Estimate& e) {
     const Spread s = spread_of(results, number++);
-    out.numbers.push_back({name, e.unit, e.value, e.sigma, s.mean, s.sigma, s.lower, s.upper, s.runs});
+    out.numbers.push_back({.name = name,
+                           .unit = e.unit,
+                           .value = e.value,
+                           .fit_sigma = e.sigma,
+                           .mean = s.mean,
+                           .sigma = s.sigma,
+                           .lower = s.lower,
+                           .upper = s.upper,
+                           .runs = s.runs});
   };
   for (const auto& name : names_) add(name, fit_.parameters.at(name));
   if (fit_.trim) add("trim", *fit_.trim);

@@ -206,7 +206,7 @@ Signals Resampler::part(const Signals& whole, std::size_t first, std::size_t las
   const std::size_t from = first >= kReach ? first - kReach : 0, to = std::min(last + kReach, whole.samples());
   const auto cut = [&](const std::vector<double>& values) {
     if (values.empty()) return values;  // an input that the model does not need
-    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to));
+    return std::vector<double>(values.begin() + from, values.begin() + to);
   };
   Signals out;
   out.name = whole.name;

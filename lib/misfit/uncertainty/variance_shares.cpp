@@ -20,7 +20,7 @@ void ShareRegression::add(const std::vector<double>& factors, double number) {
   if (count_ == 0.0) origin_ = number;  // sums about a value close to the mean
   const double y = number - origin_;
   for (Eigen::Index i = 0; i < factors_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+    const std::size_t k = i;
     const double z = factors[k];  // of variance 1 in both cases
     row_[1 + i] = z;
     row_[1 + factors_ + i] = (z * z - 1.0) * (uniform_[k] ? std::sqrt(5.0) / 2.0 : 1.0 / std::sqrt(2.0));

@@ -13,7 +13,7 @@ constexpr double allowed_outliers = 0.01;  // share of the timestamps
 double median_interval(const std::vector<double>& times) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  const auto middle = steps.begin() + steps.size() / 2;
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;
 }

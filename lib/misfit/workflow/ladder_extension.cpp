@@ -248,7 +248,7 @@ class Extension {
   /// nothing now, or cannot be fitted; the ladder then ends below it, and the search goes on from there.
   bool rebuild_without(std::size_t k, const std::optional<Candidate>& instead, bool same_effect = false) {
     if (!same_effect) left_.push_back(added_[k].from);
-    const std::vector<OnLadder> above(added_.begin() + static_cast<std::ptrdiff_t>(k) + 1, added_.end());
+    const std::vector<OnLadder> above(added_.begin() + k + 1, added_.end());
     ladder_.remove(std::to_string(added_[k].rung));
     added_.resize(k);
     try {

@@ -123,7 +123,7 @@ std::unique_ptr<LogReader> read_npy(const Bytes& bytes, const std::string& name)
   auto out = std::make_unique<NumpyReader>("NPY (NumPy)", bytes.source());
   const NpyHeader header = read_npy_header(bytes, bytes.size());
   const bool record = !header.fields.empty() && !header.fields.front().name.empty();
-  out->add(record ? "" : name, {bytes, false, bytes.size(), header, std::nullopt});
+  out->add(record ? "" : name, {.stored = bytes, .size = bytes.size(), .header = header, .crc = std::nullopt});
   out->finish();
   return out;
 }
@@ -134,7 +134,8 @@ std::unique_ptr<LogReader> read_npz(const Bytes& bytes) {
     std::string name = member.name;
     if (!name.ends_with(".npy")) continue;
     name.resize(name.size() - 4);
-    out->add(name, {member.stored, member.deflated, member.size, header_of(member), member.crc});
+    out->add(name,
+             {.stored = member.stored, .deflated = member.deflated, .size = member.size, .header = header_of(member), .crc = member.crc});
   }
   out->finish();
   return out;

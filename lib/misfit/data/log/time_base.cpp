@@ -250,8 +250,7 @@ class TimeBase {
     if (from == to) fail("the recordings of inputs and outputs have no time in common");
     if (to - from == rows) return;
     notes_.push_back(fmt::format("{} of {} samples are left out at the ends, where an input is not known", rows - (to - from), rows));
-    for (Column& column : table_.columns)
-      column.values = {column.values.begin() + static_cast<std::ptrdiff_t>(from), column.values.begin() + static_cast<std::ptrdiff_t>(to)};
+    for (Column& column : table_.columns) column.values = {column.values.begin() + from, column.values.begin() + to};
   }
 
   static constexpr std::size_t longest_name = 80;

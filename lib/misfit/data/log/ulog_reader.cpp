@@ -191,7 +191,9 @@ class UlogReader : public RecordReader {
     Layout layout;
     layout.at = m.at;
     lay_out(layout, type, "", 0);
-    RecordTopic topic{instance == 0 ? type : type + "[" + std::to_string(instance) + "]", std::move(layout.fields), 0, 0, 0};
+    RecordTopic topic;
+    topic.name = instance == 0 ? type : type + "[" + std::to_string(instance) + "]";
+    topic.fields = std::move(layout.fields);
     const auto time = std::find_if(topic.fields.begin(), topic.fields.end(), [](const RecordField& f) { return f.name == "timestamp"; });
     topic.clock = static_cast<std::size_t>(time - topic.fields.begin());
     if (time != topic.fields.end()) time->unit = "us";
@@ -224,7 +226,7 @@ class UlogReader : public RecordReader {
     const auto basic = std::find_if(basic_types.begin(), basic_types.end(), [&](const Basic& b) { return b.name == d.type; });
     if (basic == basic_types.end()) return lay_out(layout, d.type, name + ".", depth + 1);
     const bool padding = d.name.starts_with("_padding");
-    if (!padding && d.type != "char") layout.fields.push_back({name, "", layout.size, basic->type, 1.0});
+    if (!padding && d.type != "char") layout.fields.push_back({.name = name, .unit = "", .offset = layout.size, .type = basic->type});
     layout.size += basic->type.size;
     if (!padding) layout.without_padding = layout.size;
   }

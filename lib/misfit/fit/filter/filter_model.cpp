@@ -17,10 +17,16 @@ struct RandomForce {
   static constexpr const char* size = "27 N m at the parachute of the paper";
   static constexpr const char* source = "Jazwinski (1970): Ornstein-Uhlenbeck process";
   static constexpr const char* excludes = "lines in the spectrum, dependence on the motion";
-  static constexpr Role ports[] = {{"port", "*"}};
-  static constexpr CoefficientSpec coefficients[] = {
-      {"force_time", CoefficientKind::shape, 0.1, "s", 1e-6, 1e6, 0.1, "correlation time of the random force"}};
-  static constexpr OwnStateSpec states[] = {{"force", "-", 0.0}};
+  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  static constexpr CoefficientSpec coefficients[] = {{.name = "force_time",
+                                                      .kind = CoefficientKind::shape,
+                                                      .value = 0.1,
+                                                      .unit = "s",
+                                                      .lower = 1e-6,
+                                                      .upper = 1e6,
+                                                      .scale = 0.1,
+                                                      .doc = "correlation time of the random force"}};
+  static constexpr OwnStateSpec states[] = {{.name = "force"}};
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F, T* drift) {
@@ -28,7 +34,9 @@ struct RandomForce {
     drift[0] = -in.z[0] / in.c[0];
   }
   static double fastest_rate(const Reads<double, double>& in) { return 1.0 / in.c[0]; }
-  static std::vector<Example> examples() { return {{{}, {}, {0.1}, {20.0}, 0.0, {20.0}, {-200.0}, "by hand: 20/0.1"}}; }
+  static std::vector<Example> examples() {
+    return {{.coefficients = {0.1}, .states = {20.0}, .ports = {20.0}, .drifts = {-200.0}, .source = "by hand: 20/0.1"}};
+  }
 };
 
 std::vector<int> ports_of(const SystemSpec& spec) {

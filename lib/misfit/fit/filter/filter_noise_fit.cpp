@@ -124,7 +124,7 @@ class Scoring {
       if (!counts_[k]) continue;
       const double w = here.e[k] / std::sqrt(here.S[k]);
       for (std::size_t i = 0; i < n; ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
+        const Eigen::Index row = i;
         gradient_[row] += w * moved[i].e[k] + 0.5 * (1.0 - w * w) * moved[i].S[k];
         for (std::size_t j = 0; j <= i; ++j) information_(row, j) += moved[i].e[k] * moved[j].e[k] + 0.5 * moved[i].S[k] * moved[j].S[k];
       }

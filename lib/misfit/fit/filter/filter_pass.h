@@ -83,7 +83,7 @@ class FilterPass {
   /// Outputs, their rows and their variances before the update by any measurement of the sample. False where one
   /// cannot be predicted.
   [[nodiscard]] bool predict_outputs(std::size_t k) {
-    const auto NY_ = static_cast<std::size_t>(ny_);
+    const std::size_t NY_ = ny_;
     std::copy_n(x_.begin(), n_, trace_.predicted.begin() + (k * N_));
     if (options_.keep_P) {
       Eigen::Map<RowMatrix> joint(trace_.P.data() + k * N_ * (N_ + 2 * NY_), n_, n_ + twice(ny_));

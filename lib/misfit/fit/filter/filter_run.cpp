@@ -88,7 +88,7 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   out.start = states.x.row(shown_at).transpose();
   out.covariance = Eigen::MatrixXd::Zero(model.model.states(), model.model.states());
   for (std::size_t i = 0; i < specs.size(); ++i) {
-    const auto state = static_cast<Eigen::Index>(i);
+    const Eigen::Index state = i;
     if (is_known(specs[i])) {
       out.start[state] = specs[i].start;
       continue;

@@ -54,7 +54,7 @@ Eigen::MatrixXd usual_gains(const FilterModel& model, const FilterData& data) {
   Eigen::VectorXd x = data.start;
   const std::size_t last = data.signals->samples(), stride = std::max<std::size_t>((last - data.first) / samples, 1);
   for (std::size_t k = data.first; k < last; k += stride) {
-    const auto row = static_cast<Eigen::Index>(k);
+    const Eigen::Index row = k;
     if (k > data.first && !(data.read && data.read->ok[k])) continue;
     if (k > data.first) x.head(system) = data.read->x.row(row).head(system).transpose();
     Slots slots;

@@ -40,7 +40,7 @@ void start_covariance(const FilterModel& model, const FilterData& data, const Fi
     kalman.P(f, f) = force * force;
   }
   for (std::size_t o = 0; o < noise.channels.size(); ++o) {
-    const auto at = static_cast<Eigen::Index>(2 * o);
+    const Eigen::Index at = 2 * o;
     kalman.G(at, at) = kalman.G(at + 1, at + 1) = noise.channels[o].coloured * noise.channels[o].coloured;
   }
 }

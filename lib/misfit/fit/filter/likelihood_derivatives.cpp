@@ -110,7 +110,7 @@ class Differences {
   }
 
   OneDerivative by_noise(Eigen::Index i, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    Pair pair{noise_step, 0.0, 0.0, Runs(estimate_.data.size()), Runs(estimate_.data.size())};
+    Pair pair{.h = noise_step, .above = Runs(estimate_.data.size()), .below = Runs(estimate_.data.size())};
     pair.plus = loglik_with_noise(i, pair.h, pair.above);
     pair.minus = loglik_with_noise(i, -pair.h, pair.below);
     return between(pair, column);
@@ -124,7 +124,7 @@ class Differences {
   }
 
   OneDerivative with_step(const Eigen::VectorXd& step, double h, const Eigen::Ref<Eigen::VectorXd>& column) const {
-    Pair pair{h, 0.0, 0.0, Runs(estimate_.data.size()), Runs(estimate_.data.size())};
+    Pair pair{.h = h, .above = Runs(estimate_.data.size()), .below = Runs(estimate_.data.size())};
     pair.plus = objective_.loglik_at(theta_ + step, estimate_.noise, &pair.above);
     pair.minus = objective_.loglik_at(theta_ - step, estimate_.noise, &pair.below);
     OneDerivative out = between(pair, column);
@@ -200,7 +200,7 @@ double ExactObjective::loglik_at(const Eigen::VectorXd& theta, const FilterNoise
 
 LikelihoodDerivatives exact_derivatives(const FilterEstimate& estimate, const Eigen::VectorXd& theta, int threads,
                                         const LikelihoodDerivatives* near) {
-  const auto n = static_cast<std::size_t>(theta.size());
+  const std::size_t n = theta.size();
   if (n > 0 && estimate.covariance.size() == 0) return {{}, {}, {}, "the information matrix cannot be inverted"};
   const Differences differences(estimate, theta);
   std::vector<OneDerivative> parts(n + estimate.noise_fit.logs.size());

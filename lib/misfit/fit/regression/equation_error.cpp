@@ -289,7 +289,12 @@ DrivenTest test_first_equation(const Regressor& regressor, const Regression& reg
     const std::vector<Signals> noisier{with_more_noise(model.system->spec(), signals)};
     return difference(Regressor(model, noisier).linearise(model).residuals.front(), residual);
   };
-  return test_driven({signals.t, residual, acceleration, of_noise, static_cast<int>(half_period), beyond_stencil});
+  return test_driven({.t = signals.t,
+                      .residual = residual,
+                      .acceleration = acceleration,
+                      .of_noise = of_noise,
+                      .half_period = static_cast<int>(half_period),
+                      .stencil_reach = beyond_stencil});
 }
 
 void test_residuals(const Regressor& regressor, double sigma2, FittedModel& out) {

@@ -151,7 +151,7 @@ void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) con
   for (;;) {
     std::optional<Found> best;
     for (std::size_t i = 0; i < drivers_.size(); ++i) {
-      const auto term = static_cast<Eigen::Index>(i);
+      const Eigen::Index term = i;
       if (spreads_[i].constant()) continue;
       if (drivers_[i].output != outputs || std::find(found.terms.begin(), found.terms.end(), term) != found.terms.end()) continue;
       std::vector<Eigen::Index> terms = found.terms;
@@ -175,7 +175,7 @@ void WindowSearch::drop_drivers(const Fits& fits, Found& found) const {
       continue;
     }
     std::vector<Eigen::Index> terms = found.terms;
-    terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(i));
+    terms.erase(terms.begin() + i);
     const Found without = best_of(fits, terms);
     const bool output = drivers_[found.terms[i]].output;
     if (excess(found.mean_square) < (output ? enough_of_output : enough) * excess(without.mean_square)) {

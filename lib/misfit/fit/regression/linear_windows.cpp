@@ -51,7 +51,7 @@ class Steps {
 /// Answers of y to each driver, to a constant and to each initial state: a row per sample.
 Eigen::MatrixXd answers(const WindowedRecord& record, const WindowedRecord::Window& window, const Poles& poles, Steps& steps) {
   const Eigen::Index n = poles.order, m = record.drivers.cols();
-  const auto rows = static_cast<Eigen::Index>(window.to - window.from);
+  const Eigen::Index rows = window.to - window.from;
   Eigen::MatrixXd out(rows, m + 1 + n), state = Eigen::MatrixXd::Zero(n, m + 1 + n);
   state.rightCols(n).setIdentity();
   for (Eigen::Index k = 0; k < rows; ++k) {

@@ -4,6 +4,7 @@
 //   [P]  Parachute Aerodynamics from Video Data ("the paper"; lib/misfit/README.md, [1]): Eqs. 8-11, "Sliding Window Matrix Solution".
 //   [MK] E. A. Morelli, V. Klein, J. Guidance 20 (1997).
 
+#include "misfit/data/bin_size.h"
 #include "misfit/data/fit.h"
 #include "misfit/data/signals.h"
 #include "misfit/fit/regression/stencils.h"
@@ -12,12 +13,12 @@
 namespace misfit {
 
 struct SlidingBinOptions {
-  double width = 0.026179938779914943;  ///< of a bin [unit of the level, rad for angles]: 1.5 deg, "typical" in [P]
-  double step = 0.0017453292519943296;  ///< by which it slides [unit of the level]: 0.1 deg, as in [P]'s example
-  std::size_t minimum_samples = 30;     ///< bins with fewer are left out and counted; at least 4
-  bool three_point_average = true;      ///< average the channel over three samples first, as [P] did; false where it is averaged already
-  bool curves_only = false;             ///< curves and trim with white sigmas, no warnings or facts: for thousands of fits
-  std::optional<bool> driven = {};      ///< is the motion driven: the result of equation_error(); absent: from the residuals of the bins
+  double width = BinSize{}.width;    ///< of a bin [unit of the level, rad for angles]
+  double step = BinSize{}.step;      ///< by which it slides [unit of the level]
+  std::size_t minimum_samples = 30;  ///< bins with fewer are left out and counted; at least 4
+  bool three_point_average = true;   ///< average the channel over three samples first, as [P] did; false where it is averaged already
+  bool curves_only = false;          ///< curves and trim with white sigmas, no warnings or facts: for thousands of fits
+  std::optional<bool> driven = {};   ///< is the motion driven: the result of equation_error(); absent: from the residuals of the bins
   Stencils stencils = Stencils::second_order_four_point;  ///< "second order ... (four-point stencils)" [P]; the other interpretation is
                                                           ///< run too, its differences are in facts["stencils"]
 };

@@ -182,7 +182,7 @@ class Estimator {
   bool search(const ShootingPass& lengthened) {
     constexpr int with_roughness = 8, of_noise_alone = 40, most_iterations = 200;
     const int most_rounds = any_chosen(penalties_) ? with_roughness : of_noise_alone;
-    const ShootingPass whole{0, 10.0, std::min(1e8, largest_radius_), most_iterations, 1e-7};
+    const ShootingPass whole{.initial_radius = std::min(1e8, largest_radius_), .max_iterations = most_iterations, .tolerance = 1e-7};
     double before = 0.0;
     settled_ = false;
     for (int round = 0; round < most_rounds && !settled_; ++round) {
@@ -254,7 +254,7 @@ class Estimator {
     sigma[weighing.output] *= weighing.factor;
     shooting_.set_sigma(sigma);
     const double edf = estimate_.smoothed.edf;
-    if (!solve({0, 10.0, std::min(1e8, largest_radius_), few_iterations, 1e-3})) return false;
+    if (!solve({.initial_radius = std::min(1e8, largest_radius_), .max_iterations = few_iterations, .tolerance = 1e-3})) return false;
     const auto led_away = [&] {
       const std::vector<Segment> runs = shooting_.run(false);
       const std::vector<double> now = channel_sigmas({shooting_, runs, experiments_}, edf);
@@ -277,7 +277,7 @@ class Estimator {
     const Shooting::State before = shooting_.state();
     const LeastSquares::Summary then = last_;
     constexpr double radius = 1e12;  // with a smaller one, directions that the data determine by a millionth of the others creep
-    const bool solved = solve({0, 10.0, radius, 100, 1e-13});
+    const bool solved = solve({.initial_radius = radius, .max_iterations = 100, .tolerance = 1e-13});
     last_ = then;
     is_linearised_ = false;
     if (solved) return true;

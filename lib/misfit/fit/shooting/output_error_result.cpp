@@ -153,7 +153,7 @@ std::vector<ResidualRows> residual_rows(const SimulatedRuns& end) {
     ResidualRows rows{runs[e].y_rows, Eigen::VectorXd(runs[e].y_rows.rows()), {}};
     for (std::size_t i = 0; i < experiments[e].samples(); ++i) {
       for (std::size_t o = 0; o < ny; ++o) {
-        const auto at = static_cast<Eigen::Index>(i * ny + o);
+        const Eigen::Index at = i * ny + o;
         const bool used = shooting.counts(e, i, o);
         const double weight = used ? 1.0 / shooting.sigma()[o] : 0.0;
         rows.J.row(at) *= weight;
@@ -191,7 +191,7 @@ void predictions_of(const SimulatedRuns& end, const Eigen::MatrixXd& covariance,
       p.measured = experiments[e].measured[o].values;
       const double sigma = shooting.sigma()[o];
       for (std::size_t i = 0; i < p.t.size(); ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
+        const Eigen::Index row = i;
         p.predicted.push_back(run.y(row, o));
         p.sigma.push_back(std::sqrt(sigma * sigma + std::max(spread[row * ny + o], 0.0)));
         p.held_out.push_back(experiments[e].held_out(i));

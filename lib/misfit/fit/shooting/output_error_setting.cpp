@@ -67,10 +67,11 @@ std::vector<ShootingPass> short_passes(const Setting& setting, bool from_regress
   const auto half_period = static_cast<std::size_t>(std::clamp(std::numbers::pi / setting.frequency / setting.step, 5.0, 1000.0));
   std::vector<ShootingPass> list;
   if (!from_regression) {
-    list.push_back({5, 1.0, 1e4, 40, 1e-4});
-    list.push_back({5, 10.0, 1e6, 40, 1e-4});
+    list.push_back({.length = 5, .defect_weight = 1.0, .initial_radius = 1e4, .max_iterations = 40, .tolerance = 1e-4});
+    list.push_back({.length = 5, .defect_weight = 10.0, .initial_radius = 1e6, .max_iterations = 40, .tolerance = 1e-4});
   }
-  list.push_back({half_period, 10.0, nearly_gauss_newton, 30, 1e-4});
+  list.push_back(
+      {.length = half_period, .defect_weight = 10.0, .initial_radius = nearly_gauss_newton, .max_iterations = 30, .tolerance = 1e-4});
   return list;
 }
 

@@ -259,7 +259,7 @@ std::vector<RowMatrix> Shooting::predict_segments() {
   for (std::size_t e = 0; e < experiments_.size(); ++e) {
     out.emplace_back(history_[e].rows(), model_.outputs());
     for (Eigen::Index i = 0; i < history_[e].rows(); ++i) {
-      const auto sample = static_cast<std::size_t>(i);
+      const std::size_t sample = i;
       const bool known = predict_at({*stepper_, experiments_[e], inputs_[e]}, sample, history_[e].row(i).data(), y.data());
       if (!known) std::fill(y.begin(), y.end(), std::nan(""));
       for (Eigen::Index o = 0; o < out[e].cols(); ++o) out[e](i, o) = y[o];

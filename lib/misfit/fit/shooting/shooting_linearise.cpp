@@ -60,7 +60,7 @@ double Shooting::weigh(std::size_t experiment, Segment& run, Eigen::VectorXd& r)
   double count = 0.0;
   for (std::size_t i = run.first; i < run.last; ++i) {
     for (std::size_t o = 0; o < ny; ++o) {
-      const auto row = static_cast<Eigen::Index>((i - run.first) * ny + o);
+      const Eigen::Index row = (i - run.first) * ny + o;
       const bool used = counts(experiment, i, o);
       const double weight = used ? 1.0 / sigma_[o] : 0.0;
       r[row] = used ? (run.y(i - run.first, o) - signals.measured[o].values[i]) * weight : 0.0;

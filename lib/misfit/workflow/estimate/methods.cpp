@@ -68,8 +68,11 @@ MethodRun Methods::run_in_time(const std::string& method) {
     work->prepared.model = scanned->model;
     contained = scanned->contained;
   }
-  Estimation result = method_of_study.run(
-      {work->prepared.model, work->prepared.experiments, regression, {}, session_.options.threads, std::move(contained)});
+  Estimation result = method_of_study.run({.model = work->prepared.model,
+                                           .experiments = work->prepared.experiments,
+                                           .regression = regression,
+                                           .threads = session_.options.threads,
+                                           .contained = std::move(contained)});
   Fit& fit = result.at.fitted.fit;
   if (scanned != nullptr) fit.facts.insert(scanned->facts.begin(), scanned->facts.end());
   add_notes(work->prepared, fit);
@@ -117,7 +120,7 @@ FittedMethod Methods::run_in_regression_form(const Estimator& method) {
   SlidingBinOptions bins = bin_options(session_);
   const Fit& regressed = regression().fit;
   if (regressed.status != FitStatus::declined && regressed.status != FitStatus::failed) bins.driven = regressed.says_driven();
-  out = method.run({form->model, form->experiments, {}, bins, session_.options.threads}).at;
+  out = method.run({.model = form->model, .experiments = form->experiments, .bins = bins, .threads = session_.options.threads}).at;
   if (form->experiments.size() > 1)
     fit.warnings.push_back("only the first experiment, '" + form->experiments.front().name + "', is used by this method");
   for (const auto& name : left_out) fit.warnings.push_back("effect '" + name + "' is not in the equation of this method");

@@ -97,7 +97,8 @@ std::optional<ScannedStudy> scanned_study(Session& session, const Prepared& prep
   try {
     const ModelRequest request = without_effects(prepared, wanted);
     const Model model = assemble(request, session.registry);
-    const Estimation without = estimator(random_force_estimator().name).run({model, prepared.experiments, {}, {}, session.options.threads});
+    const Estimation without = estimator(random_force_estimator().name)
+                                   .run({.model = model, .experiments = prepared.experiments, .threads = session.options.threads});
     if (!without.filter) return std::nullopt;
     const std::optional<Calibration> calibration = calibrate_stage(session);
     const ScanTask task{

@@ -65,7 +65,7 @@ void note_left_out(const char* what, const std::vector<std::string>& names, cons
   constexpr std::size_t shown = 6;
   const std::size_t more = names.size() - std::min(names.size(), shown);
   remarks.push_back(fmt::format("not in the model: {} {}{}; {}", what,
-                                fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(names.size() - more), ", "),
+                                fmt::join(names.begin(), names.begin() + (names.size() - more), ", "),
                                 more > 0 ? fmt::format(" and {} more", more) : "", limit));
 }
 
@@ -97,7 +97,8 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
         c->is_measured_input ? "; it varies smoothly, so straight between samples"
         : steps              ? ""
                              : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
-    data.drivers.push_back({table.values(c->name, model.input_units.back()), c->is_measured_input, false, c->chosen_by_user});
+    data.drivers.push_back(
+        {.values = table.values(c->name, model.input_units.back()), .smooth = c->is_measured_input, .named = c->chosen_by_user});
   }
   note_left_out("inputs", left_out, fmt::format("a first model has at most {} inputs", most_guessed.inputs), model.remarks);
 }
@@ -158,7 +159,7 @@ GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, co
 std::vector<Candidate> drivers_of(std::size_t which, const std::vector<Candidate>& all, std::size_t inputs) {
   if (!may_couple(all.size(), inputs)) return {};
   std::vector<Candidate> out = all;
-  out.erase(out.begin() + static_cast<std::ptrdiff_t>(which));
+  out.erase(out.begin() + which);
   return out;
 }
 

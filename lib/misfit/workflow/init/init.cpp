@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// About ten periods where the model oscillates, else some hundred samples [s].
+/// About ten periods where the model oscillates, else several hundred samples [s].
 double length_of_zoom(const GuessedModel& model, double step) {
   constexpr double periods = 10.0, samples = 800.0;
   for (const auto& output : model.outputs) {

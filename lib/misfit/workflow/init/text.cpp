@@ -47,14 +47,16 @@ std::string driven_by(const GuessedOutput& output) {
 std::string parameters_of(const GuessedOutput& output) {
   const LinearGuess& g = output.guess;
   std::string text = fmt::format("# {}: {}.\n", output.name, g.why);
-  if (!output.stiffness.empty()) text += line_of({output.stiffness, "1/s^2", g.stiffness, "square of the natural frequency", true});
+  if (!output.stiffness.empty())
+    text += line_of(
+        {.name = output.stiffness, .unit = "1/s^2", .value = g.stiffness, .doc = "square of the natural frequency", .positive = true});
   if (!output.damping.empty()) {
     const char* doc = g.integrates ? "1/time constant of the rate" : "twice the damping ratio times the natural frequency";
-    text += line_of({output.damping, "1/s", g.damping, doc, true});
+    text += line_of({.name = output.damping, .unit = "1/s", .value = g.damping, .doc = doc, .positive = true});
   }
-  if (!output.tau.empty()) text += line_of({output.tau, "s", g.tau, "time constant", true});
-  for (const auto& gain : output.gains) text += line_of({gain.name, gain.unit, gain.value, gain.doc});
-  return text + line_of({output.rest, output.rest_unit, g.rest, output.rest_doc});
+  if (!output.tau.empty()) text += line_of({.name = output.tau, .unit = "s", .value = g.tau, .doc = "time constant", .positive = true});
+  for (const auto& gain : output.gains) text += line_of({.name = gain.name, .unit = gain.unit, .value = gain.value, .doc = gain.doc});
+  return text + line_of({.name = output.rest, .unit = output.rest_unit, .value = g.rest, .doc = output.rest_doc});
 }
 
 std::string equations_of(const GuessedOutput& output) {

@@ -133,7 +133,8 @@ void Rig::add(const PerturbStudy& request, const Model& model) {
     throw InputError(where, request.name + " needs [" + unit + "], not [" + request.number.unit + "]");
   const double sigma = request.number.value / divisor_of(request.distribution);
   perturbations_.single.push_back({request.name, unit, sigma, request.distribution == "uniform"});
-  described_.push_back({request.name, unit, value, sigma, distribution_text(request, unit), ""});
+  described_.push_back(
+      {.name = request.name, .unit = unit, .value = value, .sigma = sigma, .distribution = distribution_text(request, unit), .group = ""});
 }
 
 void Rig::add_calibration(const Session& session, const Model& model) {
