@@ -271,7 +271,8 @@ TEST(Page, AListInALineUnfolds) {
   blocks.list({{"one: p = 0.5", "two: p = 0.6"}, Tone::plain, {}, "2 others: not significant"});
   Page page("study");
   page.show(blocks);
-  expect_parts(page.text(), {"<details class=\"inner\"><summary>2 others: not significant</summary><div>\n<ul>\n<li>one: p = 0.5</li>"});
+  expect_parts(page.text(),
+               {"<details class=\"inner\"><summary>2 others: not significant</summary><div>\n<ul>\n<li>one: p\u00a0=\u00a00.5</li>"});
   EXPECT_EQ(as_text(blocks), "  2 others: not significant\n");
 }
 

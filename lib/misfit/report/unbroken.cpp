@@ -76,15 +76,19 @@ std::string unbroken(const std::string& text) {
   std::string out;
   Last last = Last::other;
   std::string_view before;
+  bool of_p = false;  // "p =", "(p <"
   for (std::size_t at = 0; at <= whole.size();) {
     const std::size_t end = std::min(whole.find(' ', at), whole.size());
     const std::string_view word = std::string_view(whole).substr(at, end - at), bare = without_punctuation(word);
     const bool number = ends_a_number(word), unit = last != Last::other && is_unit(bare);
-    const bool joined = unit || (last == Last::number && word == plus_minus) || (before == plus_minus && ends_a_number(bare));
+    const bool relation = (before == "p" || before == "(p") && (word == "=" || word == "<");
+    const bool joined = unit || relation || (of_p && !word.empty()) || (last == Last::number && word == plus_minus) ||
+                        (before == plus_minus && ends_a_number(bare));
     if (at > 0) out += joined ? no_break : std::string_view(" ");
     out += word;
     last = number ? Last::number : unit && bare == word ? Last::unit : Last::other;
     before = word;
+    of_p = relation;
     at = end + 1;
   }
   return out;
