@@ -1,5 +1,6 @@
 #include "misfit/data/reference.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,6 +49,17 @@ TEST(Reference, TheStaticTestOfTheCanopyTrimsNearThirteenDegrees) {
   EXPECT_NEAR(reference.trim->value, 12.9 * degree, 0.15 * degree);
   EXPECT_GT(reference.trim->sigma, 0.03 * degree);
   EXPECT_LT(reference.trim->sigma, 0.2 * degree);
+}
+
+TEST(Reference, ATruthWithoutSigmasHasATrimWithoutOne) {
+  const TemporaryFolder folder;
+  std::string text = "alpha_T[deg],C_m[-]\n";
+  for (int deg = 0; deg <= 20; ++deg)
+    text += fmt::format("{},{:.6f}\n", deg, std::sin(deg * degree) * (std::cos(deg * degree) - std::cos(12.0 * degree)));
+  const Reference reference = read_reference(folder.write("truth.csv", text), "C_m", "C_m", canopy);
+  ASSERT_TRUE(reference.trim.has_value());
+  EXPECT_NEAR(reference.trim->value, 12.0 * degree, 0.01 * degree);
+  EXPECT_EQ(reference.trim->sigma, 0.0);
 }
 
 TEST(Reference, BadFilesAreNamed) {

@@ -54,6 +54,7 @@ TEST(LeastSquares, ExactExponentialIsRecovered) {
   const auto summary = problem.solve({});
   EXPECT_TRUE(summary.converged) << summary.message;
   EXPECT_TRUE(summary.usable);
+  EXPECT_EQ(summary.message, "the slope of the sum of squares is zero");
   EXPECT_NEAR(problem.block(block)[0], 2.5, 1e-9);
   EXPECT_NEAR(problem.block(block)[1], -1.3, 1e-9);
   EXPECT_LT(summary.cost, 1e-16);
@@ -144,7 +145,7 @@ TEST(LeastSquares, FailureAtTheStartIsReportedInWords) {
   const auto summary = problem.solve({});
   EXPECT_FALSE(summary.converged);
   EXPECT_FALSE(summary.usable);
-  EXPECT_FALSE(summary.message.empty());
+  EXPECT_EQ(summary.message, "the model cannot be evaluated at the values to start from");
   EXPECT_TRUE(std::isnan(summary.cost));
   EXPECT_EQ(problem.block(block)[0], 4.0);
 }
@@ -194,6 +195,7 @@ TEST(LeastSquares, IterationLimitIsNotConvergence) {
   const auto summary = problem.solve(options);
   EXPECT_FALSE(summary.converged);
   EXPECT_TRUE(summary.usable);
+  EXPECT_EQ(summary.message, "iteration limit: the sum of squares may still fall");
 }
 
 /// The exponential, at whose evaluation number `last` the work is stopped.

@@ -78,6 +78,12 @@ TEST(BlocksAsJson, GiveCommandsLetterByLetter) {
   EXPECT_EQ(json::parse(json_of(blocks))[0]["text"], "misfit add study drag --at incidence=alpha_T");
 }
 
+TEST(BlocksAsJson, SayUnderWhichLineAListUnfolds) {
+  Blocks blocks;
+  blocks.list({{"one"}, Tone::plain, {}, "1 other"});
+  EXPECT_EQ(nlohmann::json::parse(json_of(blocks))[0]["folded"], "1 other");
+}
+
 TEST(BlocksAsJson, AreTheSameList) {
   Blocks blocks;
   blocks.heading("Title");

@@ -9,6 +9,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/table.h"
 #include "misfit/report/figures_discovery.h"
+#include "misfit/report/gnuplot_script.h"
 #include "misfit/report/report.h"
 #include "tests/core/temporary_folder.h"
 
@@ -217,6 +218,17 @@ TEST(PairFigure, LeavesOutCellsWithTooFewSamplesAndShowsSigmas) {
   EXPECT_NEAR(cells->z[9 + 5], 10.0 * std::sin(1) / 8.0, 1e-12);
 }
 
+TEST(PairFigure, ItsColoursEndAtAWholeNumberOfSigmasThreeAtLeast) {
+  Figure figure = pair_figure(pair());
+  Series& cells = figure.panels.front().series.front();
+  for (double& z : cells.z) z = std::clamp(z, -0.7, 0.7);
+  EXPECT_EQ(colour_limit(figure), 3.0);
+  EXPECT_NE(gnuplot_script(figure).find("set cbrange [-3:3]"), std::string::npos);
+  cells.z.front() = -4.2;
+  EXPECT_EQ(colour_limit(figure), 5.0);
+  EXPECT_EQ(colour_limit(map_figure({})), 0.0);
+}
+
 TEST(PeriodogramFigure, RunsFromNothingToOneAndJumpsAtALine) {
   const Figure figure = periodogram_figure(whiteness());
   const Series* line = find(figure, "flight_P_y");
@@ -315,7 +327,7 @@ TEST(DiscoveryReport, TheLadderIsTheFirstPictureAndEveryFigureIsDrawn) {
     for (const char* suffix : {".svg", ".csv", ".gp"})
       EXPECT_TRUE(std::filesystem::exists(folder.path() / "figures" / (std::string(name) + suffix))) << name << suffix;
   }
-  expect_parts(page, {"It fails in the wake.", "Add strut_wake.", "14 effects", "26.90 ± 0.50"});
+  expect_parts(page, {"It fails in the wake.", "Add strut_wake.", "14 effects", "26.90\u00a0±\u00a00.50"});
 }
 
 TEST(DiscoveryReport, CellsAndBarsAreInTheTableWithUnits) {

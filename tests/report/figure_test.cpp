@@ -7,10 +7,12 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <regex>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/table.h"
+#include "misfit/report/gnuplot_script.h"
 #include "misfit/report/symbols.h"
 #include "tests/core/temporary_folder.h"
 
@@ -72,6 +74,12 @@ class NoPath {
   std::string before_;
 };
 
+/// What is drawn: gnuplot names its drawings and their parts otherwise than write_figure() does.
+std::string without_titles(const std::string& svg) {
+  static const std::regex titles("<title>[^<]*</title>|<desc>[^<]*</desc>");
+  return std::regex_replace(svg, titles, "");
+}
+
 TEST(Figure, WritesDrawingNumbersAndAScriptThatDrawsItAgain) {
   const TemporaryFolder folder;
   const auto path = write_figure(folder.path(), figure_of(line({1.0, 2.0, 1.5})));
@@ -80,7 +88,35 @@ TEST(Figure, WritesDrawingNumbersAndAScriptThatDrawsItAgain) {
   EXPECT_EQ(folder.entries(), 3U);
   std::filesystem::remove(path);
   ASSERT_EQ(std::system(("cd '" + folder.path().string() + "' && gnuplot test.gp").c_str()), 0);
-  EXPECT_EQ(read_file(path), svg);
+  EXPECT_EQ(without_titles(read_file(path)), without_titles(svg));
+}
+
+TEST(Figure, LabelsAndNamesHaveTheirRoom) {
+  Figure figure = figure_of(line({1.0, 2.0, 1.5}));
+  const auto height_of_drawing = [&] {
+    const std::string script = gnuplot_script(figure), before = "svg size 900,";
+    const std::size_t at = script.find(before);
+    return at == std::string::npos ? 0 : std::atoi(script.c_str() + at + before.size());
+  };
+  Panel& panel = figure.panels.front();
+  panel.height = 80.0;
+  panel.y_label = "short", panel.y_unit = "V";  // 10 letters with what stands between and the brackets
+  const int low = height_of_drawing();
+  panel.y_label = "a label that is longer than its axis";
+  EXPECT_EQ(height_of_drawing() - low, 217) << "7 for each of the 31 letters more";
+  panel.y_marks = {{1.0, "a name that is longer than the paper can bear beside the axes (at one of its places)"}};
+  EXPECT_NE(gnuplot_script(figure).find("'a name that is longer than th…one of its places)'"), std::string::npos) << gnuplot_script(figure);
+}
+
+TEST(Figure, ADrawingIsCalledWhatItShowsAndNotByItsProgram) {
+  const TemporaryFolder folder;
+  Figure figure = figure_of(line({1.0, 2.0, 1.5}));
+  figure.title = "Force & rate";
+  figure.panels.front().series.front().legend.clear();
+  const std::string svg = read_file(write_figure(folder.path(), figure));
+  expect_parts(svg, {"<title>Force &amp; rate</title>", "<desc>Force &amp; rate; "});
+  EXPECT_EQ(svg.find("Gnuplot"), std::string::npos);
+  EXPECT_EQ(svg.find("<title>gnuplot_plot"), std::string::npos);
 }
 
 TEST(Figure, CsvHoldsEveryNumberWithUnitsAndOfALongSeriesWhatIsDrawnBesides) {
@@ -223,7 +259,7 @@ TEST(Symbols, KnownWordsAreTypesetAndOthersEscaped) {
   EXPECT_EQ(html_text("C_m of alpha_T < 3"), "C<sub>m</sub> of α<sub>T</sub> &lt; 3");
   EXPECT_EQ(html_text("my_C_m alphabet"), "my_C_m alphabet");
   EXPECT_EQ(html_text("V^0.5/s and x^2."), "V<sup>0.5</sup>/s and x<sup>2</sup>.");
-  EXPECT_EQ(html_text("m/s^2 and kg^-1 and a^b"), "m/s<sup>2</sup> and kg<sup>-1</sup> and a^b");
+  EXPECT_EQ(html_text("m/s^2 and kg^-1 and a^b"), "m/s<sup>2</sup> and kg<sup>−1</sup> and a^b");
   EXPECT_EQ(gnuplot_text("C_m run_7"), "C_{m}\u200b run\\_7");
   EXPECT_EQ(gnuplot_text("it's {x}"), "it’s \\{x\\}");
 }

@@ -97,7 +97,10 @@ TEST(GnuplotLeaves, TheFilesOfTheFigureOnly) {
   static_cast<void>(drawn(folder.path()));
   EXPECT_EQ(folder.entries(), 3U);
   folder.write("bad.gp", "plot nonsense from here\n");
-  expect_parts(message_of<RunError>([&] { run_gnuplot(folder.path(), "bad"); }), {"gnuplot failed", "bad.gp", "nonsense"});
+  expect_parts(message_of<RunError>([&] {
+                 run_gnuplot(folder.path(), "bad", {"A title", "What it shows"});
+               }),
+               {"gnuplot failed", "bad.gp", "nonsense"});
   EXPECT_EQ(folder.entries(), 4U);
 }
 
@@ -105,7 +108,10 @@ TEST(GnuplotLeaves, ADrawingThatEndsTooSoonOut) {
   const TemporaryFolder folder;
   folder.write("half.svg", "the old drawing");
   folder.write("half.gp", "set terminal svg\nset output out\nplot sin(x)\nset output\nexit\n");
-  expect_parts(message_of<RunError>([&] { run_gnuplot(folder.path(), "half"); }), {"gnuplot failed", "half.gp", "it says nothing"});
+  expect_parts(message_of<RunError>([&] {
+                 run_gnuplot(folder.path(), "half", {"A title", "What it shows"});
+               }),
+               {"gnuplot failed", "half.gp", "it says nothing"});
   EXPECT_EQ(read_file(folder.path() / "half.svg"), "the old drawing");
 }
 
@@ -114,7 +120,7 @@ TEST(GnuplotDrawing, ThatCannotBeWrittenIsToldFromOneThatCannotBeDrawn) {
   static_cast<void>(drawn(folder.path()));
   fs::remove(folder.path() / "line.svg");
   fs::create_directory(folder.path() / "line.svg");
-  const std::string message = message_of<RunError>([&] { run_gnuplot(folder.path(), "line"); });
+  const std::string message = message_of<RunError>([&] { run_gnuplot(folder.path(), "line", {"A title", "What it shows"}); });
   expect_parts(message, {"line.svg", "cannot be written"});
   EXPECT_EQ(message.find("gnuplot failed"), std::string::npos);
 }

@@ -123,7 +123,7 @@ TEST(Report, TheVerdictAndItsPictureComeFirstAndWhatFollowsIsFolded) {
     EXPECT_NE(page.find(text), std::string::npos) << text;
     return page.find(text);
   };
-  EXPECT_LT(place("drag was missing"), place("8 V to 1.2 V (-85 %)"));
+  EXPECT_LT(place("drag was missing"), place("8\u00a0V to 1.2\u00a0V (−85\u00a0%)"));
   EXPECT_LT(place("misfit discover configs/motor"), place("<figure>"));
   EXPECT_LT(place("<figure>"), place("<h2>Results</h2>"));
   EXPECT_LT(place("<h2>Curves</h2>"), place("<details><summary><h2>"));
@@ -156,7 +156,8 @@ TEST(Report, OfALadderTheLastRungIsOpenTheOthersCanBeChosenAndTheWordsAreExplain
   ASSERT_NE(study, std::string::npos);
   EXPECT_LT(last, study);
   const std::string shown = page.substr(last, study - last);
-  for (const char* part : {"friction = 5.00 ± 0.50 V/s", "20.0 ± 1.0 V/s", "-75.0 %", "Drop: none predicted, 50.0 actual"})
+  for (const char* part :
+       {"friction = 5.00\u00a0±\u00a00.50\u00a0V/s", "20.0\u00a0±\u00a01.0\u00a0V/s", "−75.0\u00a0%", "Drop: none predicted, 50.0 actual"})
     EXPECT_NE(shown.find(part), std::string::npos) << part << "\n" << shown;
   EXPECT_NE(page.find("<td>held-out gain</td>"), std::string::npos);
 }
@@ -208,10 +209,10 @@ TEST(Report, SummaryComesFirstWithFindingsStatusAndWarnings) {
   const std::string page = read_file(write_report(folder.path(), example()));
   const std::size_t first_figure = page.find("<figure>");
   for (const char* text :
-       {"12.00 ± 0.20", "4.6 sigma", "declined", "the motion is driven; filter_error can work on it", "scales with m_a"}) {
+       {"12.00\u00a0±\u00a00.20", "4.6 sigma", "declined", "the motion is driven; filter_error can work on it", "scales with m_a"}) {
     EXPECT_LT(page.find(text), first_figure) << text;
   }
-  expect_parts(page, {"3.150 ± 0.020", "12 samples lost", "abc1234", "0123456789abcdef", "track.csv", "misfit run study.toml"});
+  expect_parts(page, {"3.150\u00a0±\u00a00.020", "12 samples lost", "abc1234", "0123456789abcdef", "track.csv", "misfit run study.toml"});
   EXPECT_EQ(page.find("C_m[0]"), std::string::npos);  // curve coefficients are not for reading
 }
 
@@ -261,8 +262,25 @@ TEST(Page, ColumnsOfNumbersAreAlignedToTheRight) {
   blocks.heading("Results");
   blocks.table({columns("method|trim|why"), {{"one", "12.0 ± 0.1 deg", "3 reasons"}, {"two", "–", "none"}}});
   page.show(blocks);
-  expect_parts(page.text(), {"<th scope=\"col\" class=\"number\">trim</th>", "<td class=\"number\">12.0 ± 0.1 deg</td>",
+  expect_parts(page.text(), {"<th scope=\"col\" class=\"number\">trim</th>", "<td class=\"number\">12.0\u00a0±\u00a00.1\u00a0deg</td>",
                              "<td>3 reasons</td>", "<td>one</td>"});
+}
+
+TEST(Page, AListInALineUnfolds) {
+  Blocks blocks;
+  blocks.list({{"one: p = 0.5", "two: p = 0.6"}, Tone::plain, {}, "2 others: not significant"});
+  Page page("study");
+  page.show(blocks);
+  expect_parts(page.text(),
+               {"<details class=\"inner\"><summary>2 others: not significant</summary><div>\n<ul>\n<li>one: p\u00a0=\u00a00.5</li>"});
+  EXPECT_EQ(as_text(blocks), "  2 others: not significant\n");
+}
+
+TEST(Page, ATableIsFittedToPaperByItsLongestWords) {
+  Page page("study");
+  page.table({columns("name|value"), {{"a name of five words", "12.0 ± 0.1 deg"}}});
+  expect_parts(page.text(), {"<table style=\"--letters: 23\">"});  // "words" and the value in one piece: 5 + 14, and 2 beside each
+  EXPECT_EQ(page.text().find("th, td { overflow-wrap"), std::string::npos);
 }
 
 TEST(Page, WhatAFigureShowsIsSaidWithAxesRangesAndNames) {
@@ -274,6 +292,18 @@ TEST(Page, WhatAFigureShowsIsSaidWithAxesRangesAndNames) {
   figure.panels = {panel};
   EXPECT_EQ(alt_text(figure),
             "Missing moment against rate; moment in N m: -17 to 14; over rate in deg/s: -80 to 80. Drawn: before (p = 1e-19).");
+}
+
+TEST(Page, OfAFigureOfNamesTheNamesAreSaid) {
+  Figure figure;
+  figure.title = "What could be missing";
+  figure.x_label = "drop";
+  Panel names{"", "", {}, std::nullopt, 0.0, 230.0, false, {{2.0, "friction"}, {1.0, "drag"}}}, beside;
+  names.series = {{"a", "", Style::bars, black, {0.0, 80.0}, {1.0, 2.0}, {0.8, 1.8}, {1.2, 2.2}}};
+  beside.series = {{"p", "", Style::bars, black, {1.0, 3.0}, {1.0, 2.0}, {0.8, 1.8}, {1.2, 2.2}}};
+  beside.beside = OwnX{"evidence", {0.0, 4.0}};
+  figure.panels = {names, beside};
+  EXPECT_EQ(alt_text(figure), "What could be missing; friction, drag; over drop: 0 to 80; beside it evidence: 1 to 3.");
 }
 
 TEST(HtmlFaults, AreFound) {

@@ -376,7 +376,7 @@ def typed_text_is_kept(page):
     page.js("const a = document.querySelector('#view textarea'); a.value += '# mine\\n'; a.dispatchEvent(new Event('input'))")
     page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked")
     page.js(choose, 1)
-    page.wait(lambda: "the study of a rung" in page.text("#view") and "# mine" not in area(), "that of the rung")
+    page.wait(lambda: "the study of rung 1" in page.text("#view") and "# mine" not in area(), "that of the rung")
     assert page.text("#check") == "Nothing is wrong with it.", page.text("#check")
     page.js(choose, 0)
     page.wait(lambda: area().endswith("# mine\n") and "not saved yet" in page.text("#check"), "what was typed")
@@ -408,8 +408,8 @@ def find_and_add():
     readouts = "return [...document.querySelectorAll('#motion .readout, #force .readout')].map((r) => r.textContent)"
     places = "return [...document.querySelectorAll('#time .u-over')].map((o) => [o.getBoundingClientRect().left, o.getBoundingClientRect().top + scrollY])"
     said = page.wait(lambda: all(page.js(readouts)) and page.js(readouts), "the values at the cursor, in all plots")
-    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ · predicted −?[\d.]+ ± [\d.]+ px", said[0]), said
-    assert re.match(r"[\d.]+ s · moment_y −?[\d.]+ ± [\d.]+ N m$", said[-2]), said
+    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ · predicted −?[\d.]+\s±\s[\d.]+\spx", said[0]), said
+    assert re.match(r"[\d.]+ s · moment_y −?[\d.]+\s±\s[\d.]+\sN m$", said[-2]), said
     before = page.js(places)
     for k in range(8):
         plot.send_keys(Keys.SHIFT, Keys.ARROW_RIGHT)
@@ -537,7 +537,7 @@ def settings():
     page.job("done", 1)
     page.view("curves")
     page.click("#settings summary")
-    assert re.search(r"k \[.*\] [\d.]+ ± [\d.]+ .*estimated", page.text("#settings")), page.text("#settings")
+    assert re.search(r"k \[.*\] [\d.]+\s±\s[\d.]+\s.*estimated", page.text("#settings")), page.text("#settings")
     page.js("const e = document.querySelector('#effect'); e.value = 'cubic_damping'; e.dispatchEvent(new Event('change'))")
     assert page.text("#formula") == "cubic damping: F = -cubic_damping rate^3", page.text("#formula")
     page.click("[data-parameter=k]")
@@ -701,7 +701,7 @@ def cells_and_figures_are_as_they_should(page):
     assert said[1] == [[1.5, 2.5], [100.5, 102.5]], "no sample between is marked"
     assert said[2:6] == [1, None, True, True], "a value at an edge is in the range above; a curve over the others is seen whole; one scale is kept"
     assert said[6] == [6, None, None, 8], "no marker of another time"
-    assert said[7] == ["1234567.0 ± 2.0", "−1.2346e+7 ± 12000", "101325.7", "−1.5e−7"], said[7]
+    assert said[7] == ["1234567.0\u00a0±\u00a02.0", "−1.2346e+7\u00a0±\u00a012000", "101325.7", "−1.5e−7"], said[7]
     assert said[8] == [True, True], "the axis holds the band, but not where it is much wider than usual"
     assert said[9] == ["lateral moment", "x_px", [["C", 0], ["m", -1], [" of output error", 0]]], "names as they are read; symbols stay"
 

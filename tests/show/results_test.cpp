@@ -1,6 +1,7 @@
 // The same blocks for the terminal and the report: units, headings, what is left out.
 #include "misfit/show/results.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -53,6 +54,26 @@ TEST(ShownDiscovery, SaysTheVerdictFirstAndNamesOnlyOtherEffectsAsIndistinguisha
   expect_parts(as_text(blocks_of(d)), {"Missing: strut_wake.", "Estimates of a candidate are those of the search"});
 }
 
+TEST(ShownDiscovery, CandidatesThatAreNotSignificantShareALineWithTheSmallestP) {
+  Discovery d;
+  for (const char* why : {"a part of it", "not significant: family-wise p = 0.5", "not significant: family-wise p = 0.33",
+                          "not significant: family-wise p = 0.6; its refit does not explain the free run"}) {
+    Candidate c;
+    c.effect = "effect_" + std::to_string(d.candidates.size());
+    c.why = why;
+    c.p_value = d.candidates.size() == 1 ? 0.5 : 0.33;
+    d.candidates.push_back(c);
+  }
+  const Blocks blocks = blocks_of(d);
+  const std::string text = as_text(blocks);
+  expect_parts(text, {"effect_0: a part of it", "effect_3: not significant: family-wise p = 0.6; its refit does not explain the free run",
+                      "2 others: not significant, smallest p = 0.33 (effect_2)"});
+  EXPECT_EQ(text.find("effect_1: "), std::string::npos);
+  const auto* folded = std::get_if<List>(&blocks.all().back());
+  ASSERT_NE(folded, nullptr);
+  EXPECT_THAT(folded->items, testing::ElementsAre("effect_1: p = 0.5", "effect_2: p = 0.33"));
+}
+
 TEST(ShownUncertainty, HasTheBandOfThreeSigmasAndFourNumbersPerTableOfShares) {
   Uncertainty u;
   u.method = "sliding_bin";
@@ -97,6 +118,37 @@ TEST(ShownRung, RandomForcesOfDifferentUnitsHaveARowEach) {
   after.force["dw/dt"].value = 5.0;
   const std::string text = as_text(rung_blocks({{before, after}}, after));
   expect_parts(text, {"random force on du/dt", "within its sigma", "random force on dw/dt", "-75.0 %"});
+}
+
+TEST(ShownFit, NoiseIsNamedInWords) {
+  Fit fit;
+  fit.method = "filter_error";
+  fit.noise = {{"w", {0.3, 0.01, "rad/s"}},
+               {"w_coloured", {0.1, 0.01, "rad/s"}},
+               {"w_coloured_damping", {0.5, 0.1, "-"}},
+               {"w_coloured_frequency", {15.0, 0.5, "Hz"}},
+               {"lamp_coloured", {0.2, 0.02, "V"}}};
+  std::vector<std::string> names;
+  for (const auto& row : parameter_table(fit).rows) names.push_back(row.front());
+  EXPECT_THAT(names, testing::ElementsAre("noise of lamp_coloured", "noise of w", "coloured noise of w",
+                                          "damping of the coloured noise of w", "frequency of the coloured noise of w"));
+}
+
+TEST(ShownLadder, WhereTheStudyHoldsNothingOutTheGainIsThatOfTheSearch) {
+  Rung first, second;
+  second.id = 1;
+  second.parent = 0;
+  second.added = "strut_wake";
+  second.actual_drop = 270.7;
+  second.gain_of_search = 27.70435967945741;
+  std::string text = as_text(blocks_of(Ladder{{first, second}}));
+  expect_parts(text, {"(+27.7)", "Gains in parentheses are of the search"});
+  expect_parts(as_text(rung_blocks({{first, second}}, second), {.width = 400}),
+               {"gain of the log-likelihood of the last quarter, without which discovery fitted: +27.7."});
+  second.held_out_gain = 12.5;
+  text = as_text(blocks_of(Ladder{{first, second}}));
+  expect_parts(text, {"+12.5"});
+  EXPECT_EQ(text.find("parentheses"), std::string::npos);
 }
 
 TEST(ShownFit, ASmoothedCurveHasItsEffectiveDegreesOfFreedomBesideItsRange) {

@@ -19,6 +19,8 @@ struct Rung {
   std::string system;                                       ///< kind
   std::string method;
   std::optional<double> predicted_drop, actual_drop, held_out_gain;  ///< against the parent; missing across a change of system or channels
+  /// Where the study holds nothing out: the gain in discovery, which fitted both models again without the last quarter of each experiment.
+  std::optional<double> gain_of_search;
   double loglik = 0.0;
   std::optional<double> validation_loglik;
   std::map<std::string, Estimate> force;                ///< strength of the random force

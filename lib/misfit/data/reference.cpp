@@ -67,7 +67,8 @@ Reference read_reference(const std::filesystem::path& path, const std::string& c
   reference.value = points.value;
   reference.sigma = points.sigma;
   if (curve == static_curve && angle) {
-    if (const auto zero = stable_zero(points)) reference.trim = Estimate{zero->x, zero->sigma, reference.of_unit};
+    const bool has_sigmas = table.find("sigma") != nullptr;  // else what is left over of a parabola through a truth says nothing of it
+    if (const auto zero = stable_zero(points)) reference.trim = Estimate{zero->x, has_sigmas ? zero->sigma : 0.0, reference.of_unit};
   }
   return reference;
 }

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Ceres reports a failed linear solve through glog whatever its own logging options say; what matters of it is in Summary::message.
+// Ceres reports a failed linear solve through glog whatever its own logging options say; that it failed is in Summary::message.
 void silence_glog() {
   static std::once_flag once;
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
@@ -148,13 +148,27 @@ ceres::Solver::Options to_ceres(const LeastSquares::Options& options, std::size_
   return to;
 }
 
+/// Why Ceres stopped; its own words begin with the rule that it followed, and go on with numbers in its notation.
+std::string in_words(const ceres::Solver::Summary& summary) {
+  const auto begins = [&](const char* words) { return summary.message.starts_with(words); };
+  if (begins("Function tolerance")) return "the sum of squares no longer changes";
+  if (begins("Gradient tolerance")) return "the slope of the sum of squares is zero";
+  if (begins("Parameter tolerance")) return "the parameters no longer change";
+  if (begins("Minimum trust region radius")) return "no smaller step lowers the sum of squares";
+  if (begins("Maximum number of iterations")) return "iteration limit: the sum of squares may still fall";
+  if (summary.termination_type == ceres::CONVERGENCE) return "the sum of squares is at a minimum";
+  if (summary.IsSolutionUsable()) return "no minimum of the sum of squares was reached";
+  return summary.message.find("valuation failed") != std::string::npos ? "the model cannot be evaluated at the values to start from"
+                                                                       : "no step lowers the sum of squares";
+}
+
 void describe(const ceres::Solver::Summary& summary, LeastSquares::Summary& result) {
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.usable = summary.IsSolutionUsable();
-  result.message = summary.message;
   if (result.usable) result.cost = summary.final_cost;
   result.linearisations = std::max(0, summary.num_jacobian_evaluations);
   result.iterations = std::max(0, result.linearisations - 1);
+  result.message = in_words(summary);
 }
 
 // With its bounds, or constant; how many free columns that makes.

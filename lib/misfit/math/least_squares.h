@@ -38,7 +38,7 @@ class LeastSquares {
   struct Summary {
     bool converged = false;  ///< a tolerance was met; false: iteration limit, failure
     bool usable = false;     ///< the solution is at least no worse than the start
-    std::string message;     ///< Ceres' own words
+    std::string message;     ///< why it stopped: "the sum of squares no longer changes"
     double cost = 0.0;       ///< ½ Σ ρ
     int iterations = 0;      ///< linearisations after the first
     int linearisations = 0;

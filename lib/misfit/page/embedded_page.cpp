@@ -85,8 +85,8 @@ std::string state_of(const EmbeddedPage& page) {
 }
 
 std::string study_of(const Place& place) {
-  return fmt::format(R"({{"text":{},"hash":"","file":{},"editable":false,"faults":[]}})", json_string(read_file(place.study)),
-                     json_string(place.study.filename().string()));
+  return fmt::format(R"({{"text":{},"hash":"","file":{},"rung":{},"editable":false,"faults":[]}})", json_string(read_file(place.study)),
+                     json_string(place.study.filename().string()), place.id);
 }
 
 /// By which any model is fitted: one that is chosen stays chosen in a model that it has not fitted.

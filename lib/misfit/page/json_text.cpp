@@ -91,7 +91,8 @@ struct BlockWriter {
     return fmt::format(R"({{"kind":"paragraph","text":{},"tone":{}}})", text, tone(b.tone));
   }
   std::string operator()(const List& b) const {
-    return fmt::format(R"({{"kind":"list","items":{},"tone":{}}})", words(b.items), tone(b.tone));
+    const std::string folded = b.folded.empty() ? "" : R"(,"folded":)" + json_words(b.folded);
+    return fmt::format(R"({{"kind":"list","items":{},"tone":{}{}}})", words(b.items), tone(b.tone), folded);
   }
   std::string operator()(const TableBlock& b) const {
     std::vector<std::string> columns, rows;
@@ -169,10 +170,10 @@ std::string json_of(const Figure& f) {
   for (const Panel& panel : f.panels) panels.push_back(json_of(panel, shared));
   for (const std::string& note : f.notes) notes.push_back(json_words(note));
   return fmt::format(R"({{"name":{},"title":{},"caption":{},"xLabel":{},"xName":{},"xUnit":{},"xRange":{},"panels":{},"xs":{},"notes":{},)"
-                     R"("equal":{},"xMarks":{},"zLabel":{}}})",
+                     R"("equal":{},"xMarks":{},"zLabel":{},"zMost":{}}})",
                      json_string(f.name), json_words(f.title), json_words(f.caption), json_words(f.x_label), json_string(f.x_label),
                      json_words(f.x_unit), range(f.x_range), json_list(panels), shared.text(), json_list(notes), f.equal_axes,
-                     marks(f.x_marks), json_words(f.z_label));
+                     marks(f.x_marks), json_words(f.z_label), json_number(report::colour_limit(f)));
 }
 
 std::string json_of(const Blocks& blocks) {

@@ -117,11 +117,7 @@ std::vector<std::size_t> by_significance(const std::vector<Candidate>& all) {
 }
 
 /// Why a candidate was not accepted; empty where the column of its p says it.
-std::string reason_beside_p(const Candidate& c) {
-  const std::string only_p = "not significant: family-wise p = ";
-  const bool said = c.why.starts_with(only_p) && c.why.find_first_not_of("0123456789.e+-", only_p.size()) == std::string::npos;
-  return said ? "" : c.why;
-}
+std::string reason_beside_p(const Candidate& c) { return is_only_not_significant(c) ? "" : c.why; }
 
 /// What the table of blocks_of(Discovery) has no column for. In its order. `at`: the words of its place, where the effect has several;
 /// `place`: in the discovery.

@@ -17,6 +17,7 @@
 #include "misfit/report/gnuplot_run.h"
 #include "misfit/report/gnuplot_script.h"
 #include "misfit/report/gnuplot_series.h"
+#include "misfit/report/page.h"
 
 namespace misfit::report {
 namespace {
@@ -81,6 +82,19 @@ Table numbers_of(const Figure& figure) {
 
 }  // namespace
 
+double colour_limit(const Figure& figure) {
+  constexpr double least = 3.0;
+  double most = 0.0;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& s : panel.series) {
+      if (s.style != Style::cells) continue;
+      most = std::max(most, least);
+      for (const double z : s.z) most = std::isfinite(z) ? std::max(most, std::ceil(std::abs(z))) : most;
+    }
+  }
+  return most;
+}
+
 std::string palette(std::size_t k) {
   static constexpr std::array<const char*, 6> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"};
   return colours[k % colours.size()];
@@ -96,7 +110,7 @@ std::filesystem::path write_figure(const std::filesystem::path& dir, const Figur
   make_writable_folder(dir);
   write_csv(dir / (figure.name + ".csv"), numbers_of(figure));
   write_atomically(dir / (figure.name + ".gp"), gnuplot_script(figure));
-  run_gnuplot(dir, figure.name);
+  run_gnuplot(dir, figure.name, {figure.title.empty() ? figure.name : figure.title, alt_text(figure)});
   return dir / (figure.name + ".svg");
 }
 

@@ -75,6 +75,10 @@ struct Figure {
   std::string z_label, z_unit;     ///< of the colours of cells
 };
 
+/// Ends of the scale of the colours of cells, ± as much, in every drawing: a whole number that none of them is beyond, 3 at least, so that
+/// chance is pale. 0: the figure has no cells.
+[[nodiscard]] double colour_limit(const Figure& figure);
+
 /// Okabe and Ito's palette, safe for colour-blind readers, dark colours first, without yellow: colour k of k = 0, 1, 2, …; repeats after 6.
 [[nodiscard]] std::string palette(std::size_t k);
 inline constexpr const char* grey = "#8a8a8a";

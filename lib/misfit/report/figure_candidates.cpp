@@ -19,7 +19,7 @@ void add_bar(Series& series, double value, double y, double half) {
   series.hi.push_back(y + half);
 }
 
-double strength_of_evidence(double p) { return p > 0.0 ? std::clamp(-std::log10(p), 0.0, longest) : longest; }
+double strength_of_evidence(double p) { return p > 0.0 ? std::clamp(0.0 - std::log10(p), 0.0, longest) : longest; }
 
 Panel drop_panel(const std::vector<Candidate>& candidates, std::size_t count) {
   Panel panel;
@@ -45,7 +45,7 @@ Panel drop_panel(const std::vector<Candidate>& candidates, std::size_t count) {
 Panel evidence_panel(const std::vector<Candidate>& candidates, std::size_t count) {
   Panel panel;
   Series p{"minus_log10_p", "", Style::bars, palette(0), {}, {}, {}, {}};
-  Series limit{"threshold", fmt::format("p = {:g}, family-wise", threshold), Style::dashed, palette(1), {}, {}, {}, {}};
+  Series limit{"threshold", fmt::format("p = {:g}", threshold), Style::dashed, palette(1), {}, {}, {}, {}};
   constexpr double half = 0.3;
   for (std::size_t k = 0; k < count; ++k) add_bar(p, strength_of_evidence(candidates[k].p_value), static_cast<double>(count - k), half);
   limit.x = {-std::log10(threshold), -std::log10(threshold)};
@@ -53,7 +53,7 @@ Panel evidence_panel(const std::vector<Candidate>& candidates, std::size_t count
   double most = 3.0;
   for (double v : p.x) most = std::max(most, v);
   panel.series = {p, limit};
-  panel.beside = OwnX{"-log10 p", {0.0, 1.05 * most}};
+  panel.beside = OwnX{"−log10 p", {0.0, 1.05 * most}};
   return panel;
 }
 

@@ -117,9 +117,9 @@ std::string colour_of(const std::string& channel, Errors& errors) {
   return palette(place == 1 ? 2 : place == 2 ? 3 : place);  // 1 is the random force
 }
 
-/// What one channel of a rung adds to the panel of `what`.
+/// What one channel of a rung adds to the panel of its unit; `ahead`: "8 samples ahead".
 struct ChannelError {
-  std::string what, channel;
+  std::string ahead, channel;
   Estimate rms;
   std::size_t place = 0;  ///< among those of the rung
 };
@@ -127,14 +127,14 @@ struct ChannelError {
 /// One marker per channel, side by side; or, relative, a line of markers.
 void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>& panels, Errors& errors) {
   const Estimate& e = error.rms;
-  const std::string key = as_key(error.channel + "_" + error.what);
+  const std::string key = as_key(error.channel + "_RMS, " + error.ahead), legend = error.channel + ", " + error.ahead;
   const std::string colour = colour_of(error.channel, errors);
   if (errors.relative) {
     const double first = errors.first.emplace(key, e.value).first->second;
-    Panel& panel = panel_for(panels, error.what, "% of first");
+    Panel& panel = panel_for(panels, "RMS", "% of first");
     for (const Style style : {Style::line, Style::markers}) {
       const bool line = style == Style::line;
-      Series& series = series_for(panel, {key + (line ? "_line" : ""), line ? "" : error.channel, style, colour});
+      Series& series = series_for(panel, {key + (line ? "_line" : ""), line ? "" : legend, style, colour});
       series.x.push_back(rung.id);
       series.y.push_back(100.0 * e.value / first);
     }
@@ -143,7 +143,7 @@ void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>
   const std::string unit = display_unit(e.unit);
   constexpr double all = 0.3;
   const double width = all / static_cast<double>(std::max<std::size_t>(rung.rms.size(), 1));
-  Series& series = series_for(panel_for(panels, error.what, unit), {key, error.channel, Style::markers, colour});
+  Series& series = series_for(panel_for(panels, "RMS", unit), {key, legend, Style::markers, colour});
   series.x.push_back(rung.id - 0.5 * all + (static_cast<double>(error.place) + 0.5) * width);
   series.y.push_back(e.value * convert(1.0, e.unit, unit));
 }
@@ -151,11 +151,11 @@ void add_channel(const Rung& rung, const ChannelError& error, std::vector<Panel>
 void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& far, Errors& errors) {
   std::size_t place = 0;
   for (const auto& [channel, e] : rung.rms) {
-    add_channel(rung, {"RMS, one sample ahead", channel, e, place}, near, errors);
+    add_channel(rung, {"one sample ahead", channel, e, place}, near, errors);
     const auto steps = rung.k_step.find(channel);
     if (steps != rung.k_step.end() && steps->second.size() > far_ahead) {
-      const std::string what = fmt::format("RMS, {} samples ahead", kLadderSteps[far_ahead]);
-      add_channel(rung, {what, channel, {steps->second[far_ahead], 0.0, e.unit}, place}, far, errors);
+      const std::string ahead = fmt::format("{} samples ahead", kLadderSteps[far_ahead]);
+      add_channel(rung, {ahead, channel, {steps->second[far_ahead], 0.0, e.unit}, place}, far, errors);
     }
     ++place;
   }

@@ -12,10 +12,13 @@
 #include <cstdlib>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/report/symbols.h"
+#include "misfit/report/unbroken.h"
 
 namespace misfit::report {
 namespace {
@@ -102,12 +105,27 @@ std::string shown(std::string words) {
   return end == std::string::npos ? "it says nothing" : words.substr(0, end + 1);
 }
 
+/// gnuplot calls every drawing "Gnuplot", and what has no legend by a number, which viewers show at the mouse.
+std::string with_words(const std::string& svg, const DrawingWords& words) {
+  constexpr std::string_view title = "<title>Gnuplot</title>", end_of_head = "</desc>", of_part = "<title>gnuplot_plot_", end = "</title>";
+  const std::size_t at = svg.find(title), body = at == std::string::npos ? at : svg.find(end_of_head, at);
+  if (body == std::string::npos) return svg;
+  std::string out = svg.substr(0, at) + "<title>" + escape_html(unbroken(words.title)) + "</title>\n<desc>" +
+                    escape_html(unbroken(words.description)) + "</desc>";
+  std::size_t done = body + end_of_head.size();
+  for (std::size_t part = svg.find(of_part, done); part != std::string::npos; part = svg.find(of_part, done)) {
+    out += svg.substr(done, part - done);
+    done = svg.find(end, part) + end.size();
+  }
+  return out + svg.substr(done);
+}
+
 /// Neither ~/.gnuplot nor ./.gnuplot (-d), nor GNUTERM, GNUPLOT_LIB, locale and the like of the user.
 constexpr const char* environment = "/usr/bin/env -i PATH=/usr/bin:/bin HOME=/nonexistent LC_ALL=C.UTF-8";
 
 }  // namespace
 
-void run_gnuplot(const fs::path& dir, const std::string& name) {
+void run_gnuplot(const fs::path& dir, const std::string& name, const DrawingWords& words_of_it) {
   const std::optional<fs::path> program = find_program("gnuplot");
   if (!program)
     throw RunError("gnuplot is not installed (not on the PATH): the figures cannot be drawn; their .csv and .gp files are in " +
@@ -121,7 +139,7 @@ void run_gnuplot(const fs::path& dir, const std::string& name) {
   }
   const std::string svg = drawing.text(), words = said.text();
   if (!complete(svg, words)) throw RunError("gnuplot failed on " + (dir / (name + ".gp")).string() + ": " + shown(words));
-  write_atomically(dir / (name + ".svg"), svg);
+  write_atomically(dir / (name + ".svg"), with_words(svg, words_of_it));
 }
 
 }  // namespace misfit::report

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "misfit/report/extent.h"
 #include "misfit/report/gnuplot_series.h"
@@ -36,10 +37,11 @@ struct Place {
   int legend_rows = 0;
 };
 
-std::string axis_text(const std::string& label, const std::string& unit) {
-  const std::string plain = label + (unit.empty() || unit == "-" ? "" : "  [" + unit + "]");
-  return gnuplot_text(plain);
+std::string label_with_unit(const std::string& label, const std::string& unit) {
+  return label + (unit.empty() || unit == "-" ? "" : "  [" + unit + "]");
 }
+
+std::string axis_text(const std::string& label, const std::string& unit) { return gnuplot_text(label_with_unit(label, unit)); }
 
 std::size_t letters(const std::string& text) {
   std::size_t count = 0;
@@ -49,6 +51,24 @@ std::size_t letters(const std::string& text) {
   return count;
 }
 
+/// A name beside an axis: of one that would leave the axes no room, begin and end.
+std::string shortened(const std::string& name) {
+  constexpr std::size_t most = 48, end = 18;
+  std::vector<std::size_t> letters_at;  // where each begins
+  for (std::size_t byte = 0; byte < name.size(); ++byte) {
+    if ((static_cast<unsigned char>(name[byte]) & 0xC0U) != 0x80U) letters_at.push_back(byte);
+  }
+  if (letters_at.size() <= most) return name;
+  return name.substr(0, letters_at[most - end - 1]) + "…" + name.substr(letters_at[letters_at.size() - end]);
+}
+
+/// High enough for the words along its y axis.
+double height_of(const Panel& panel) {
+  constexpr double letter = 7.0, between = 12.0;
+  return std::max(panel.height, between + letter * static_cast<double>(letters(label_with_unit(panel.y_label, panel.y_unit))));
+}
+
+/// `width`: of the axes.
 Place place_panel(const Panel& panel, double top, double width) {
   std::size_t entries = 0;
   std::size_t longest = 0;
@@ -57,10 +77,10 @@ Place place_panel(const Panel& panel, double top, double width) {
     ++entries;
     longest = std::max(longest, letters(legend_of(s)));
   }
-  Place place{top, panel.height, 0};
+  Place place{top, height_of(panel), 0};
   if (entries == 0) return place;
   const double entry = 62.0 + 7.6 * static_cast<double>(longest);
-  const int columns = std::clamp(static_cast<int>((width - left - right) / entry), 1, static_cast<int>(entries));
+  const int columns = std::clamp(static_cast<int>(width / entry), 1, static_cast<int>(entries));
   place.legend_rows = (static_cast<int>(entries) + columns - 1) / columns;
   place.top += legend_row * place.legend_rows;
   return place;
@@ -122,13 +142,13 @@ Margins margins_of(const Figure& figure) {
   constexpr double letter = 7.2;
   Margins m{left, right, bottom, false};
   for (const Panel& panel : figure.panels) {
-    for (const Mark& mark : panel.y_marks) m.left = std::max(m.left, 30.0 + letter * static_cast<double>(letters(mark.text)));
+    for (const Mark& mark : panel.y_marks) m.left = std::max(m.left, 30.0 + letter * static_cast<double>(letters(shortened(mark.text))));
     const int digits = panel.y_marks.empty() ? digits_of_tics(y_extent_of(panel)) : 0;
     if (digits > 0) m.left = std::max(m.left, 60.0 + letter * digits);
     for (const Series& s : panel.series) m.right = s.style == Style::cells ? colour_bar : m.right;
   }
   std::size_t longest = 0;
-  for (const Mark& mark : figure.x_marks) longest = std::max(longest, letters(mark.text));
+  for (const Mark& mark : figure.x_marks) longest = std::max(longest, letters(shortened(mark.text)));
   const double room = (full_width - m.left - m.right) / static_cast<double>(std::max<std::size_t>(figure.x_marks.size(), 1));
   m.slanted = letter * static_cast<double>(longest) > room;
   if (m.slanted) m.bottom += 0.35 * letter * static_cast<double>(longest);
@@ -205,7 +225,8 @@ std::string head(const Figure& figure, double width, double height) {
     text += "# " + note + " \n";  // the blank: a backslash at the end would continue the comment
   }
   text += fmt::format(
-      "if (!exists('out')) out = '{}.svg'\nset encoding utf8\nset terminal svg size {:.0f},{:.0f} enhanced font 'sans-serif,13' background "
+      "if (!exists('out')) out = '{}.svg'\nset encoding utf8\nset minussign\nset terminal svg size {:.0f},{:.0f} enhanced font "
+      "'sans-serif,13' background "
       "'#ffffff'\nset output out\n",
       figure.name, width, height);
   return text +
@@ -216,7 +237,8 @@ std::string head(const Figure& figure, double width, double height) {
 
 std::string marks_text(const std::vector<Mark>& marks) {
   std::string text;
-  for (const Mark& mark : marks) text += fmt::format("{}'{}' {:.9g}", text.empty() ? "" : ", ", gnuplot_text(mark.text), mark.at);
+  for (const Mark& mark : marks)
+    text += fmt::format("{}'{}' {:.9g}", text.empty() ? "" : ", ", gnuplot_text(shortened(mark.text)), mark.at);
   return "(" + text + ")";
 }
 
@@ -227,13 +249,9 @@ std::vector<Mark> blank(std::vector<Mark> marks) {
 
 /// Blue for negative, red for positive, white at 0.
 std::string colours_text(const Figure& figure, const Panel& panel) {
-  std::vector<const std::vector<double>*> columns;
-  for (const Series& s : panel.series) {
-    if (s.style == Style::cells) columns.push_back(&s.z);
-  }
-  if (columns.empty()) return "";
-  const Range range = finite_range(columns);
-  const double most = std::max(std::abs(range[0]), std::abs(range[1]));
+  const bool cells = std::any_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.style == Style::cells; });
+  if (!cells) return "";
+  const double most = colour_limit(figure);
   return fmt::format(
       "set palette defined (-1 '#0072B2', 0 '#ffffff', 1 '#D55E00')\nset cbrange [{:.9g}:{:.9g}]\nset cblabel '{}' offset 0.5,0\n"
       "set colorbox\n",
@@ -309,7 +327,8 @@ std::string gnuplot_script(const Figure& figure) {
       places.push_back(places.back());  // its legend has the rows of its neighbour's
       continue;
     }
-    places.push_back(place_panel(panel, top, has_columns(figure) ? left_column * width : width));
+    const Margins m = margins_of_panel(figure, panel, width);
+    places.push_back(place_panel(panel, top, width - m.left - m.right));
     if (figure.equal_axes) places.back().height = width - left - right;
     top = places.back().top + places.back().height + panel_gap;
   }

@@ -55,9 +55,9 @@ std::string look(const Series& s) {
     case Style::points:
       return "with points pt 7 ps 0.28 " + colour;
     case Style::markers:
-      return "with points pt 6 ps 0.7 lw 1.5 " + colour;
+      return "with points pt 7 ps 0.6 " + colour;
     case Style::error_bars:
-      return "with points pt 7 ps 0.4 " + colour;
+      return "with points pt 7 ps 0.6 " + colour;
     case Style::x_bars:
       return "with points pt 13 ps 0.9 " + colour;
     case Style::band:
@@ -67,7 +67,7 @@ std::string look(const Series& s) {
     case Style::steps:
       return fmt::format("with steps lw {} {}", s.width, colour);
     case Style::boxes:
-      return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.45 border lc rgb '" + s.colour + "'";
+      return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.6 border lc rgb '" + s.colour + "'";
     case Style::bars:
       return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.6 border lc rgb '" + s.colour + "'";
     case Style::cells:
@@ -98,7 +98,7 @@ std::string bars_clause(const Figure& figure, const Series& s, std::size_t first
       horizontal ? fmt::format("(v({})):(v({}))", first + 2, first + 1) : fmt::format("(v({})):(v({}))", first, first + 2);
   const std::string length = fmt::format("(v({})-v({}))", first + 3, first + 2);
   return fmt::format("'{}.csv' using {}:{} with vectors nohead lw {} lc rgb '{}' notitle, \\\n     ", figure.name, from,
-                     horizontal ? length + ":(0)" : "(0):" + length, horizontal ? 3 : 1.4, s.colour);
+                     horizontal ? length + ":(0)" : "(0):" + length, horizontal ? 3.0 : 1.8, s.colour);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "misfit/report/style.h"
 #include "misfit/report/symbols.h"
+#include "misfit/report/unbroken.h"
 #include "misfit/show/rows.h"
 
 namespace misfit::report {
@@ -92,6 +93,30 @@ std::vector<bool> number_columns(const TableBlock& table) {
     out.push_back(table.columns[j].align == Align::right || (j > 0 && any && all));
   }
   return out;
+}
+
+/// Of the longest piece of a cell that no line end may part.
+std::size_t letters_of_longest_word(const std::string& cell) {
+  std::size_t most = 0, letters = 0;
+  for (const char c : unbroken(cell)) {
+    const bool begins_a_letter = (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+    letters = c == ' ' ? 0 : letters + (begins_a_letter ? 1 : 0);
+    most = std::max(most, letters);
+  }
+  return most;
+}
+
+/// How wide a table is at least: the style sheet fits it to the paper by its size of letters, so that no word is parted and nothing cut
+/// off.
+std::size_t least_letters(const TableBlock& table) {
+  constexpr std::size_t between = 2;
+  std::size_t all = 0;
+  for (std::size_t j = 0; j < table.columns.size(); ++j) {
+    std::size_t most = letters_of_longest_word(table.columns[j].heading);
+    for (const auto& row : table.rows) most = std::max(most, j < row.size() ? letters_of_longest_word(row[j]) : 0);
+    all += most + between;
+  }
+  return std::max<std::size_t>(all, 1);
 }
 
 std::string in_html(const std::string& text, Texts texts) { return texts == Texts::as_written ? escape_html(text) : html_text(text); }
@@ -179,9 +204,11 @@ void Page::paragraph(const Paragraph& paragraph) {
 }
 
 void Page::list(const List& list) {
+  if (!list.folded.empty()) fold(list.folded);
   body_ += list.tone == Tone::warning ? "<ul class=\"warnings\">\n" : "<ul>\n";
   for (const std::string& item : list.items) body_ += "<li>" + html_text(item) + "</li>\n";
   body_ += "</ul>\n";
+  if (!list.folded.empty()) unfold();
 }
 
 void Page::table(const TableBlock& table, Texts texts) {
@@ -189,7 +216,8 @@ void Page::table(const TableBlock& table, Texts texts) {
   std::vector<std::string> header;
   for (const TableColumn& column : table.columns) header.push_back(column.heading);
   const std::vector<bool> numbers = number_columns(table);
-  body_ += "<div class=\"wide\" tabindex=\"0\"><table><thead>" + table_row(header, numbers, true, texts) + "</thead><tbody>\n";
+  body_ += fmt::format("<div class=\"wide\" tabindex=\"0\"><table style=\"--letters: {}\"><thead>{}</thead><tbody>\n", least_letters(table),
+                       table_row(header, numbers, true, texts));
   for (const auto& row : table.rows) body_ += table_row(row, numbers, false, texts);
   body_ += "</tbody></table></div>\n";
 }
@@ -204,32 +232,52 @@ void Page::figure(const Figure& figure, const std::string& svg) {
       escape_html(figure.name));
 }
 
-std::string alt_text(const Figure& figure) {
-  const auto named = [](const std::string& label, const std::string& unit) {
-    return label + (unit.empty() || unit == "-" ? "" : " in " + unit);
-  };
-  const auto range = [](double low, double high) {
-    return low > high ? std::string("no data") : fmt::format("{:.3g} to {:.3g}", low, high);
-  };
-  const auto widen = [](const std::vector<double>& values, double& low, double& high) {
+namespace {
+
+std::string with_unit(const std::string& label, const std::string& unit) {
+  return label + (unit.empty() || unit == "-" ? "" : " in " + unit);
+}
+
+/// Least and largest of what is drawn, as it comes.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void add(const std::vector<double>& values) {
     for (const double v : values) {
       if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
     }
-  };
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  std::string out = figure.title;
-  double left = infinite, right = -infinite;
-  std::vector<std::string> curves;
+  }
+  [[nodiscard]] std::string words() const { return low > high ? std::string("no data") : fmt::format("{:.3g} to {:.3g}", low, high); }
+};
+
+/// What a panel has along y: names where it has names, else its label with the range; empty: its neighbour says it.
+std::string along_y(const Panel& panel) {
+  if (panel.beside) return "";
+  std::vector<std::string> names;
+  for (const Mark& mark : panel.y_marks) names.push_back(mark.text);
+  if (!names.empty()) return fmt::format("{}", fmt::join(names, ", "));
+  Extent y;
+  for (const Series& s : panel.series) y.add(s.y);
+  return (panel.y_label.empty() ? "y" : with_unit(panel.y_label, panel.y_unit)) + ": " + y.words();
+}
+
+}  // namespace
+
+std::string alt_text(const Figure& figure) {
+  Extent x;
+  std::vector<std::string> curves, panels, further;
   for (const Panel& panel : figure.panels) {
-    double low = infinite, high = -infinite;
+    Extent own;
     for (const Series& s : panel.series) {
-      widen(s.y, low, high);
-      if (!panel.beside) widen(s.x, left, right);
+      (panel.beside ? own : x).add(s.x);
       if (!s.legend.empty()) curves.push_back(s.legend);
     }
-    out += fmt::format("{} {}: {}", out.empty() ? "" : ";", named(panel.y_label, panel.y_unit), range(low, high));
+    if (panel.beside) further.push_back(panel.beside->label + ": " + own.words());
+    if (std::string words = along_y(panel); !words.empty()) panels.push_back(std::move(words));
   }
-  if (!figure.x_label.empty()) out += fmt::format("; over {}: {}", named(figure.x_label, figure.x_unit), range(left, right));
+  std::string out = figure.title;
+  if (!panels.empty()) out += fmt::format("{}{}", out.empty() ? "" : "; ", fmt::join(panels, "; "));
+  if (!figure.x_label.empty()) out += fmt::format("; over {}: {}", with_unit(figure.x_label, figure.x_unit), x.words());
+  if (!further.empty()) out += fmt::format("; beside it {}", fmt::join(further, "; "));
   return curves.empty() ? out + "." : fmt::format("{}. Drawn: {}.", out, fmt::join(curves, "; "));
 }
 
@@ -267,7 +315,7 @@ std::string inline_svg(const std::string& svg, const std::string& prefix, const 
   replace_all(body, "id=\"", "id=\"" + prefix + "-");
   replace_all(body, "href='#", "href='#" + prefix + "-");
   replace_all(body, "url(#", "url(#" + prefix + "-");
-  return fmt::format("<svg {} style=\"max-width:{}px\" role=\"img\" aria-label=\"{}\">{}", box, width, escape_html(label), body);
+  return fmt::format("<svg {} style=\"max-width:{}px\" role=\"img\" aria-label=\"{}\">{}", box, width, escape_html(unbroken(label)), body);
 }
 
 }  // namespace misfit::report

@@ -48,7 +48,7 @@ td.number { white-space: nowrap; }
 figure { margin: 1rem 0 1.4rem; }
 figure svg { display: block; width: 100%; height: auto; }
 figcaption { max-width: 50rem; margin-top: .3rem; font-size: .9rem; color: var(--soft); }
-figcaption .note { display: block; color: var(--bad); }
+figcaption .note { display: block; color: var(--ink); }
 figcaption .files { white-space: nowrap; font-size: .8rem; }
 code { font: .85rem "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anywhere; }
 @media (max-width: 44rem) { body { padding: .8rem .8rem 3rem; font-size: 15px; } h1 { font-size: 1.35rem; } .answer { font-size: 1.05rem; }
@@ -57,7 +57,8 @@ code { font: .85rem "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anyw
   .drawing:not(:focus)::after { content: "Larger: tap it"; display: block; text-align: right; font-size: .8rem; color: var(--soft); } }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; } a { color: inherit; } h2 { margin-top: 1rem; }
   figure, tr, .warnings li { break-inside: avoid; } h2, h3, summary { break-after: avoid; } .wide { overflow: visible; }
-  table { font-size: 8.5pt; } th, td { overflow-wrap: anywhere; padding-right: .6rem; } td.number { white-space: normal; } summary { list-style: none; } figcaption .files { display: none; }
+  table { font-size: min(8.5pt, calc(280mm / var(--letters, 1))); } th, td { padding-right: 1em; } td.number { white-space: normal; }
+  summary { list-style: none; } figcaption .files { display: none; }
   details::details-content { content-visibility: visible; height: auto; } details:not([open])::details-content { display: block; } }
 )css";
 

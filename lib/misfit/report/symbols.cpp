@@ -4,6 +4,8 @@
 #include <cctype>
 #include <string_view>
 
+#include "misfit/report/unbroken.h"
+
 namespace misfit::report {
 namespace {
 
@@ -78,7 +80,8 @@ std::string escape_gnuplot(const std::string& text) {
 
 }  // namespace
 
-std::vector<Run> typeset(const std::string& text) {
+std::vector<Run> typeset(const std::string& plain) {
+  const std::string text = unbroken(plain);
   std::vector<Run> runs;
   for (std::size_t at = 0; at < text.size();) {
     if (const Symbol* symbol = symbol_at(text, at)) {
@@ -86,7 +89,9 @@ std::vector<Run> typeset(const std::string& text) {
       append(runs, Run::Place::below, symbol->index);
       at += symbol->word.size();
     } else if (const std::size_t length = power_length(text, at); length > 0) {
-      append(runs, Run::Place::above, std::string_view(text).substr(at + 1, length - 1));
+      const bool negative = text[at + 1] == '-';
+      if (negative) append(runs, Run::Place::above, "\u2212");
+      append(runs, Run::Place::above, std::string_view(text).substr(at + (negative ? 2 : 1), length - (negative ? 2 : 1)));
       at += length;
     } else {
       append(runs, Run::Place::line, std::string_view(text).substr(at, 1));

@@ -12,8 +12,8 @@ struct Run {
 };
 
 /// Known symbols in a plain text become Greek letters with indices ("alpha_T", "C_m_alphadot"), powers after '^' are raised ("m/s^2"). A
-/// symbol counts only as a whole word; everything else stays as it is.
-[[nodiscard]] std::vector<Run> typeset(const std::string& text);
+/// symbol counts only as a whole word. Values are unbroken() with their units; everything else stays as it is.
+[[nodiscard]] std::vector<Run> typeset(const std::string& plain);
 
 /// For a single-quoted gnuplot string in enhanced mode, with everything special escaped; an apostrophe becomes a typographic one.
 [[nodiscard]] std::string gnuplot_text(const std::string& text);

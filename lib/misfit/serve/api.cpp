@@ -282,8 +282,8 @@ std::string Api::state() {
 
 Answer Api::study(const Place& place) const {
   const std::string text = read_file(place.study);
-  return {200, fmt::format(R"({{"text":{},"hash":"{}","file":{},"editable":{},"faults":{}}})", json_string(text), hash_text(text),
-                           json_string(place.study.string()), place.id == 0, json_of(faults_of(place.study, text, registry_)))};
+  return {200, fmt::format(R"({{"text":{},"hash":"{}","file":{},"rung":{},"editable":{},"faults":{}}})", json_string(text), hash_text(text),
+                           json_string(place.study.string()), place.id, place.id == 0, json_of(faults_of(place.study, text, registry_)))};
 }
 
 Answer Api::save(const std::string& text, const std::string& hash) {

@@ -89,6 +89,7 @@ class TextWriter {
   }
   void operator()(const List& list) {
     if (last_ == Last::table && list.tone != Tone::warning) text += "\n";
+    if (!list.folded.empty()) return line(list.folded, list.tone);
     const std::size_t shown = std::min(list.excerpt.most, list.items.size());
     for (std::size_t k = 0; k < shown; ++k) line(list.items[k], list.tone);
     rest(list.items.size() - shown, shown, list.excerpt);

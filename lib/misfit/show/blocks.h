@@ -35,6 +35,7 @@ struct List {
   std::vector<std::string> items;
   Tone tone = Tone::plain;
   Excerpt excerpt = {};
+  std::string folded = {};  ///< the items in a line: a page folds them under it, a terminal shows it alone
 };
 
 enum class Align { left, right };

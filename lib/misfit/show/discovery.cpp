@@ -72,6 +72,33 @@ TableBlock candidate_table(const Discovery& d) {
   return table;
 }
 
+/// Why each candidate was accepted or not; those that were not significant in one line.
+Blocks reasons_of(const Discovery& d) {
+  std::vector<std::string> why, others;
+  const Candidate* nearest = nullptr;
+  for (const Candidate& c : d.candidates) {
+    if (c.why.empty()) continue;
+    const std::string name = effect_at(c.effect, c.roles);
+    if (!is_only_not_significant(c)) {
+      why.push_back(name + ": " + c.why);
+      continue;
+    }
+    others.push_back(name + ": " + p_equals(c.p_value));
+    if (nearest == nullptr || c.p_value < nearest->p_value) nearest = &c;
+  }
+  Blocks out;
+  if (why.empty() && others.empty()) return out;
+  out.subheading("Reasons");
+  out.list({why, Tone::plain, {5, "candidates.json"}});
+  if (nearest == nullptr) return out;
+  const std::string count = counted(others.size(), why.empty() ? "candidate" : "other", why.empty() ? "candidates" : "others");
+  List folded{others};
+  folded.folded =
+      fmt::format("{}: not significant, smallest {} ({})", count, p_equals(nearest->p_value), effect_at(nearest->effect, nearest->roles));
+  out.list(std::move(folded));
+  return out;
+}
+
 const Rung* parent_of(const Ladder& ladder, const Rung& rung) {
   const auto found = std::find_if(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& other) { return other.id == rung.parent; });
   return found == ladder.rungs.end() ? nullptr : &*found;
@@ -146,8 +173,16 @@ class BeforeAndAfter {
 std::string drop_sentence(const Rung& rung) {
   std::string out = fmt::format("Drop: {} predicted, {:.1f} actual for {}", rung.predicted_drop ? shown_drop(rung.predicted_drop) : "none",
                                 *rung.actual_drop, counted(static_cast<std::size_t>(parameters_added(rung)), "parameter", "parameters"));
+  if (!rung.held_out_gain && rung.gain_of_search)
+    return out + "; gain of the log-likelihood of the last quarter, without which discovery fitted: " + shown_gain(rung.gain_of_search) +
+           ".";
   return out + (rung.held_out_gain ? "; gain of the held-out log-likelihood: " + shown_gain(rung.held_out_gain) + "."
                                    : "; no held-out gain: the study holds nothing out (validation = \"last 25 %\").");
+}
+
+/// In parentheses where it is of the search.
+std::string gain_in_table(const Rung& rung) {
+  return !rung.held_out_gain && rung.gain_of_search ? "(" + shown_gain(rung.gain_of_search) + ")" : shown_gain(rung.held_out_gain);
 }
 
 /// Per channel, of all rungs.
@@ -162,6 +197,11 @@ TableBlock error_table(const Ladder& ladder) {
 }
 
 }  // namespace
+
+bool is_only_not_significant(const Candidate& c) {
+  const std::string only_p = "not significant: family-wise p = ";
+  return c.why.starts_with(only_p) && c.why.find_first_not_of("0123456789.e+-", only_p.size()) == std::string::npos;
+}
 
 Blocks blocks_of(const Diagnosis& d) {
   Blocks out;
@@ -202,12 +242,7 @@ Blocks blocks_of(const Discovery& d) {
   out.figures("candidates");
   out.table(candidate_table(d));
   if (!d.force.empty()) out.paragraph("Random force of this model: " + force_text(d.force) + ".");
-  std::vector<std::string> why;
-  for (const Candidate& c : d.candidates) {
-    if (!c.why.empty()) why.push_back(effect_at(c.effect, c.roles) + ": " + c.why);
-  }
-  if (!why.empty()) out.subheading("Reasons");
-  out.list({why, Tone::plain, {5, "candidates.json"}});
+  out.append(reasons_of(d));
   if (!d.tried.empty()) out.subheading("Effect families tested");
   out.list({d.tried, Tone::plain, {0, "discovery.json"}});
   if (!d.not_tried.empty()) out.subheading("Effects that could not be tried");
@@ -252,13 +287,21 @@ Blocks blocks_of(const Ladder& ladder) {
   std::vector<std::string> remarks;
   for (const Rung& r : ladder.rungs) {
     table.rows.push_back({std::to_string(r.id), r.added.empty() ? "(the study)" : added_in_words(r, ladder), r.system,
-                          shown_drop(r.predicted_drop), shown_drop(r.actual_drop), shown_gain(r.held_out_gain), force_text(r.force)});
+                          shown_drop(r.predicted_drop), shown_drop(r.actual_drop), gain_in_table(r), force_text(r.force)});
     if (trims) table.rows.back().push_back(shown(r.trim));
     if (!r.parameters.empty())
       remarks.push_back(fmt::format("Rung {}, {}: {}.", r.id, added_in_words(r, ladder), values_text(r.parameters)));
     if (!r.note.empty()) remarks.push_back(as_sentence(fmt::format("Rung {}: {}", r.id, r.note)));
   }
   out.table(std::move(table));
+  const bool of_search =
+      std::any_of(ladder.rungs.begin(), ladder.rungs.end(), [](const Rung& r) { return !r.held_out_gain && r.gain_of_search; });
+  if (of_search) {
+    out.paragraph(
+        "Gains in parentheses are of the search: the study holds nothing out, so discovery fitted both models again without the last "
+        "quarter "
+        "of each experiment.");
+  }
   out.table(error_table(ladder));
   out.list({remarks});
   return out;

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
@@ -31,6 +34,20 @@ std::string range_of(const CurveEstimate& curve) {
   const std::string range =
       fmt::format("from {:.4g} to {:.4g}", display_value(lowest, curve.of_unit), display_value(highest, curve.of_unit));
   return with_display_unit(range, curve.of_unit) + " of " + curve.of;
+}
+
+/// "noise of w", "frequency of the coloured noise of w": of the names of fit.json, "w" and "w_coloured_frequency".
+std::string noise_in_words(const std::string& name, const std::map<std::string, Estimate>& noise) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> parts = {
+      {{"_coloured_frequency", "frequency of the coloured noise of "},
+       {"_coloured_damping", "damping of the coloured noise of "},
+       {"_coloured", "coloured noise of "}}};
+  for (const auto& [end, words] : parts) {
+    if (!name.ends_with(end)) continue;
+    const std::string channel = name.substr(0, name.size() - end.size());
+    if (noise.contains(channel)) return std::string(words) + channel;
+  }
+  return "noise of " + name;
 }
 
 Blocks blocks_of(const Fit& fit) {
@@ -72,7 +89,7 @@ TableBlock parameter_table(const Fit& fit) {
     if (!is_curve_coefficient(name))
       table.rows.push_back({name, Row(name, estimate).shown() + (estimate.sigma > 0.0 ? "" : " (sigma not available)")});
   }
-  add_rows(others, "noise of ", fit.noise);
+  for (const auto& [name, estimate] : fit.noise) others.emplace_back(noise_in_words(name, fit.noise), estimate);
   add_rows(others, "random force, ", fit.force);
   const TableBlock more = rows_table("", others);
   table.rows.insert(table.rows.end(), more.rows.begin(), more.rows.end());

@@ -39,6 +39,9 @@ namespace misfit {
 
 // Parts of these.
 
+/// Whether a candidate was not accepted for its p alone, which stands beside it in a table.
+[[nodiscard]] bool is_only_not_significant(const Candidate& candidate);
+
 /// Parameters, noise and random force of one fit.
 [[nodiscard]] TableBlock parameter_table(const Fit& fit);
 /// Where curves of different methods, or of a method and a reference, differ; what was not compared.

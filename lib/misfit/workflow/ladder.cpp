@@ -178,13 +178,6 @@ ContainedFit begin_with(const FilterWork& parent, const std::optional<Candidate>
   return out;
 }
 
-/// Where the study holds nothing out, discovery does for its refits: what that said, which the rung cannot.
-std::string gain_of_search_in_words(const Rung& rung, const Candidate& from) {
-  if (rung.validation_loglik || !from.held_out_gain) return "";
-  return fmt::format("the study holds nothing out; discovery fitted without the last quarter: gain of its log-likelihood {:+.1f}",
-                     *from.held_out_gain);
-}
-
 /// Why discovery could not say beforehand what an effect would bring.
 std::string not_predicted(const Effect& effect, const std::optional<Candidate>& from) {
   const auto& coefficients = effect.spec().coefficients;
@@ -336,7 +329,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));
     const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.progress_of("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
-    if (from) append_note(rung.note, gain_of_search_in_words(rung, *from));
+    if (from && !rung.validation_loglik) rung.gain_of_search = from->held_out_gain;
   }
   append(std::move(rung));
   last_ = std::move(child);

@@ -410,7 +410,7 @@ void classify_motion(const Model& model, const MotionFacts& motion, Fit& fit) {
   const std::string what_now = fit.driven ? std::string("The method that can estimate such motion is ") + random_force_estimator().name
                                           : "Begin with other values, or add what the model lacks";
   fit.message = why + " cannot follow the measured motion (" + fit.facts["explained"] + "; " + fit.facts["whiteness"] + "). " + what_now +
-                ". Solver: " + fit.message;
+                ". The search ended: " + fit.message;
   for (const auto& curve : model.curves)
     mark_not_informative(model, curve.name, "the simulated trajectory does not follow the measured motion", fit);
   fit.trim.reset();

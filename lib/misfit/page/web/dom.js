@@ -74,7 +74,10 @@ export function blocks(list, { figures = () => {}, skip = () => false } = {}) {
     const tone = { class: block.tone === 'plain' ? null : block.tone };
     if (block.kind === 'heading') out.append(element(block.level === 1 ? 'h3' : 'h3', {}, words(block.text)));
     if (block.kind === 'paragraph') out.append(element('p', tone, words(block.text)));
-    if (block.kind === 'list') out.append(element('ul', tone, ...block.items.map((item) => element('li', {}, words(item)))));
+    if (block.kind === 'list') {
+      const list = element('ul', tone, ...block.items.map((item) => element('li', {}, words(item))));
+      out.append(block.folded ? element('details', {}, element('summary', {}, words(block.folded)), list) : list);
+    }
     if (block.kind === 'table') out.append(table(block));
     if (block.kind === 'figures') {
       const place = element('div');
@@ -134,7 +137,7 @@ export function tick(value, step = 0) {
 export function shownWithSigma(value, sigma) {
   if (!(sigma > 0) || !Number.isFinite(value)) return shown(value);
   const size = Math.max(Math.abs(value), sigma);
-  if ((size >= 1e6 && sigma >= 100) || size < 1e-4) return `${shown(value, Math.min(Math.max(digitsFor(value, sigma), 2), 15))} ± ${shown(sigma, 2)}`;
+  if ((size >= 1e6 && sigma >= 100) || size < 1e-4) return `${shown(value, Math.min(Math.max(digitsFor(value, sigma), 2), 15))}\u00a0±\u00a0${shown(sigma, 2)}`;
   const places = Math.min(Math.max(1 - Math.floor(Math.log10(sigma)), 0), 8);
-  return `${value.toFixed(places).replaceAll('-', '−')} ± ${sigma.toFixed(places)}`;
+  return `${value.toFixed(places).replaceAll('-', '−')}\u00a0±\u00a0${sigma.toFixed(places)}`;
 }

@@ -1,6 +1,10 @@
 // The study's text: checked by misfit while it is typed, saved only when nothing is wrong with it.
 import { element } from '/dom.js';
 
+/** Of a text that cannot be edited here. */
+const whose = (rung) => (rung === 0 ? ": the study's own model (rung 0). This page only shows it; misfit open edits it."
+  : `: the study of rung ${rung}, written by misfit; the study itself is edited with its own model (rung 0).`);
+
 export function editor({ get, kept, post, look }) {
   // Of the study itself, also while the text of a rung is shown, which can only be read:
   let known = null; // as it lies on disk
@@ -124,7 +128,7 @@ export function editor({ get, kept, post, look }) {
       furtherHead: element('p', { hidden: true }, 'More errors, found after skipping those already listed:'), further: element('ul', { class: 'fault', id: 'further' }),
       save: element('button', { id: 'save', class: 'main', onclick: save }, 'Save'), undo: element('button', { onclick: undo }, 'Undo all') };
     area.addEventListener('scroll', () => (parts.lines.scrollTop = area.scrollTop));
-    view.append(element('p', { class: 'soft' }, fresh.file, fresh.editable ? '' : ': the study of a rung, written by misfit; the study itself is edited with its own model (rung 0).'),
+    view.append(element('p', { class: 'soft' }, fresh.file, fresh.editable ? '' : whose(fresh.rung)),
       element('div', { class: 'editor' }, parts.lines, area), parts.message, parts.furtherHead, parts.further);
     if (fresh.editable) view.append(element('div', { class: 'buttons' }, parts.save, parts.undo));
     number();

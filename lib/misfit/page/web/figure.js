@@ -179,7 +179,9 @@ class Plot {
   }
   spoken() {
     const names = this.series.map((s) => plain(spaced(s.legend))).filter((name) => name !== ''), heldOut = this.view.heldOut();
-    return `${plain(spaced(this.figure.title))}: ${plain(spaced(this.panel.label))} [${plain(this.panel.unit)}] against ${plain(spaced(this.figure.xLabel))}` +
+    const label = plain(spaced(this.panel.label)), unit = plain(this.panel.unit), along = plain(spaced(this.panel.beside?.label ?? this.figure.xLabel));
+    return [plain(spaced(this.figure.title)), label && `${label}${unit === '' || unit === '-' ? '' : ` [${unit}]`}`].filter((part) => part).join(': ') +
+      (along === '' ? '' : ` against ${along}`) +
       (names.length > 0 ? `; ${names.join(', ')}` : '') +
       (heldOut.length > 0 ? `; held out from ${heldOut.map((part) => part.map((t) => shown(t)).join(' to ')).join(' s and from ')} s` : '');
   }
@@ -297,10 +299,9 @@ class Plot {
     return element('span', {}, words(this.figure.zLabel), ` ${shown(-most, 2)} `, bar, ` ${shown(most, 2)} `, this.panel.ground ? none : '',
       this.panel.ground ? 'too few samples' : '');
   }
+  /** Its ends, by the rule of the report. */
   most() {
-    const out = [0, this.view.options.most ?? 3];
-    for (const s of this.series) for (const z of s.z ?? []) if (z !== null) out[1] = Math.max(out[1], Math.abs(z));
-    return Math.ceil(out[1]);
+    return Math.max(this.figure.zMost, this.view.options.most ?? 0);
   }
 
   axes() {

@@ -500,7 +500,7 @@ async function showPair(body, map, current) {
   const [first, second] = asked.map((one) => one.value ?? null);
   const timeOf = (name, other) => (name === 'time' && other ? { t: other.t, values: other.t } : null); // a sample's own
   const x = first ?? timeOf(map.x, second), y = second ?? timeOf(map.y, first);
-  const most = Math.max(3, ...[map.figure, map.before].flatMap((f) => f?.panels[0].series[0].z ?? []).map((z) => Math.abs(z ?? 0)));
+  const most = Math.max(...[map.figure, map.before].map((f) => f?.zMost ?? 0));
   const cells = new PairCells(map.figure), now = { ...map.figure, title: `Now: ${plain(map.figure.title)}` };
   const byCell = x && y ? new SamplesByCell(x.t, (i) => (x.values[i] === null || y.values[i] === null ? undefined : cells.at(x.values[i], y.values[i]))) : null;
   const figure = draw(body, map.before ? now : map.figure, { height: map.before ? 0.6 : 0.9, most, ...pointing(map, byCell, {
