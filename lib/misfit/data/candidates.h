@@ -39,9 +39,9 @@ struct Candidate {
   std::optional<std::string> also;      ///< other values that explain hardly less, in words
   /// What is still significant beside it, the only reason against it: "an unknown surface dv/dt(y, u)".
   std::optional<std::string> remaining;
-  double p_value = 1.0;                 ///< corrected for cells scanned and families
-  std::vector<std::string> group;       ///< effects that these data cannot distinguish from this one, itself included; empty: alone
-  bool absorbed = false;                ///< by the free parameters (1 − R² < 0.01), and not clearly significant: not tested
+  double p_value = 1.0;            ///< corrected for cells scanned and families
+  std::vector<std::string> group;  ///< effects that these data cannot distinguish from this one, itself included; empty: alone
+  bool absorbed = false;           ///< by the free parameters (1 − R² < 0.01), and not clearly significant: not tested
   bool accepted = false;
   std::string why;                             ///< of being accepted or not, in words
   std::map<std::string, Estimate> parameters;  ///< at the refit, else one Gauss–Newton step
@@ -117,9 +117,9 @@ struct Discovery {
   double seconds = 0.0;
 };
 
-/// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain of the log-likelihood
-/// on the measurements of the estimation and on those held out, of those that act where the model fails. nullptr: there is none, a curve of
-/// unknown form explains more, or a refitted candidate that is refused more than twice as much.
+/// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain of the
+/// log-likelihood on the measurements of the estimation and on those held out, of those that act where the model fails. nullptr: there is
+/// none, a curve of unknown form explains more, or a refitted candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
 
 /// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.

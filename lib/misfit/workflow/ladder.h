@@ -90,10 +90,11 @@ struct LadderListener {
   std::function<void(const Rung&)> added;
 };
 
-/// discover --auto (lib/misfit/README.md, 6.5): adds the accepted effect and searches again, or where none is accepted the one to begin with
-/// (candidate_to_begin_with), or else a curve of unknown form, until nothing more is gained or 12 rounds are done. A rung whose drop may be chance is taken off again, and so is an effect added
-/// here that later ones have made needless (leaving.h), those above it being added again without it; one of its alternatives takes its
-/// place where that explains clearly more now. Of a needless effect that somebody else added, a note.
+/// discover --auto (lib/misfit/README.md, 6.5): adds the accepted effect and searches again, or where none is accepted the one to begin
+/// with (candidate_to_begin_with), or else a curve of unknown form, until nothing more is gained or 12 rounds are done. A rung whose drop
+/// may be chance is taken off again, and so is an effect added here that later ones have made needless (leaving.h), those above it being
+/// added again without it; one of its alternatives takes its place where that explains clearly more now. Of a needless effect that somebody
+/// else added, a note.
 void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener = {});
 
 /// The same options for another study, its results in the out/ beside it.

@@ -192,7 +192,7 @@ void FilterSearch::iterate_again() {
 void FilterSearch::refine_jointly() {
   constexpr int most_steps = 20, most_axis_steps = 2;
   constexpr double short_step = 8.0, as_promised = 0.2;  // promised gain: of four sigmas of one parameter; share of it
-  constexpr double little = 0.1;  // gain, and share of what was promised
+  constexpr double little = 0.1;                         // gain, and share of what was promised
   LikelihoodDerivatives exact;
   bool one_sided = false;
   at_kink_ = false;
