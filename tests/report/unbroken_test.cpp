@@ -11,6 +11,7 @@ TEST(Unbroken, NoLineEndsBetweenAValueItsSigmaAndTheirUnit) {
   EXPECT_EQ(unbroken("friction = 100.03 ± 0.17 rad/s^2 and more"), "friction = 100.03\u00a0±\u00a00.17\u00a0rad/s^2 and more");
   EXPECT_EQ(unbroken("(1.2 ± 0.1)e7 N m, then"), "(1.2\u00a0±\u00a00.1)e7\u00a0N\u00a0m, then");
   EXPECT_EQ(unbroken("falls from 1.89 rad/s to 0.303 rad/s (84 %)."), "falls from 1.89\u00a0rad/s to 0.303\u00a0rad/s (84\u00a0%).");
+  EXPECT_EQ(unbroken("139 px to 140 px (+0.6 %)"), "139\u00a0px to 140\u00a0px (+0.6\u00a0%)");
   EXPECT_EQ(unbroken("noise 0.2 1/s"), "noise 0.2\u00a01/s");
 }
 

@@ -253,7 +253,7 @@ std::string colours_text(const Figure& figure, const Panel& panel) {
   if (!cells) return "";
   const double most = colour_limit(figure);
   return fmt::format(
-      "set palette defined (-1 '#0072B2', 0 '#ffffff', 1 '#D55E00')\nset cbrange [{:.9g}:{:.9g}]\nset cblabel '{}' offset 0.5,0\n"
+      "set palette defined (-1 '#0072B2', 0 '#ffffff', 1 '#D55E00')\nset cbrange [{:.9g}:{:.9g}]\nset cblabel '{}' offset 1.2,0\n"
       "set colorbox\n",
       -most, most, axis_text(figure.z_label, figure.z_unit));
 }
