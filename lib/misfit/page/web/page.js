@@ -10,7 +10,7 @@ import { editor } from '/editor.js';
 
 const at = (id) => document.getElementById(id);
 const time = new TimeGroup();
-const phone = matchMedia('(max-width: 34rem)'); // as in page.css
+const narrow = matchMedia('(max-width: 62rem)'); // as in page.css: map and motion below each other
 const tabs = [['where', 'Where it fails'], ['candidates', 'What could be missing'], ['curves', 'Curves, parameters'], ['calibration', 'Calibration'],
   ['ladder', 'Ladder'], ['study', 'Study'], ...(live ? [['commands', 'Commands']] : [])];
 
@@ -128,14 +128,14 @@ function showHead() {
 const modelsSeen = () => here.state.models.map((model) => model.added);
 let addedTo = [];
 
-/** On a phone the sentence and what is next; the rest opens. */
+/** On a narrow screen the sentence and what is next, so that the map is on the first one; the rest opens. */
 function showVerdict(all) {
   const first = all.filter((b) => b.tone === 'lead' || b.tone === 'command'), rest = all.filter((b) => b.kind !== 'heading' && !first.includes(b));
-  const open = at('verdict').querySelector('details')?.open ?? !phone.matches;
+  const open = at('verdict').querySelector('details')?.open ?? !narrow.matches;
   const more = element('details', { open }, element('summary', {}, 'Where it fails, estimates, errors'), element('div', { class: 'facts' }, blocks(rest)));
   at('verdict').replaceChildren(blocks(first.filter((b) => b.tone === 'lead')), rest.length > 0 ? more : '', blocks(first.filter((b) => b.tone !== 'lead')));
 }
-phone.addEventListener('change', () => { if (!phone.matches) at('verdict').querySelector('details')?.setAttribute('open', ''); });
+narrow.addEventListener('change', () => { if (!narrow.matches) at('verdict').querySelector('details')?.setAttribute('open', ''); });
 
 /** What misfit says against an effect, in a reader's words; the whole sentence is the title. */
 function reason(why) {
