@@ -15,7 +15,7 @@ struct InputDeadZone {
   static constexpr const char* valid = "a band about zero, alike on both sides, without memory; inputs within it and beyond it";
   static constexpr const char* size = "a valve with an overlap of 5 % of its travel, open by 20 %: a quarter of the flow is lacking";
   static constexpr const char* source =
-      "Merritt, Hydraulic Control Systems (1967), section 5.2: closed-centre valves; Khalil, Nonlinear "
+      "Merritt, Hydraulic Control Systems (1967), chapter 5: closed-centre valves; Khalil, Nonlinear "
       "Systems (2002), section 1.2.7";
   static constexpr const char* excludes =
       "unequal sides, play with memory (backlash), an input that is limited (saturation), a spring with clearance (dead_zone)";

@@ -291,6 +291,14 @@ TEST(AnEffectBesideWhichSomethingRemains, IsBegunWithAndCalledAPartOfWhatIsMissi
   const Outcome outcome = run({"discover", file, "--auto"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(added(study), (std::vector<std::string>{"", "coulomb_friction", "unknown_force"})) << outcome.out << outcome.err;
+  const json ladder = json::parse(content(study.path("out/ladder.json")));
+  EXPECT_EQ(ladder.at(1).at("remained"), "an unknown curve dw/dt(w)");
+  EXPECT_FALSE(ladder.at(2).contains("remained"));
+  ASSERT_EQ(run({"remove", file, "unknown_force"}).status, 0);
+  ASSERT_EQ(run({"discover", file}).status, 0);
+  ASSERT_EQ(run({"report", file}).status, 0);
+  EXPECT_THAT(json::parse(content(study.path("out/verdict.json"))).at("sentence").get<std::string>(),
+              testing::StartsWith("coulomb_friction explains a part of what is missing"));
 }
 
 /// The force of the recording: 1.5 m/s^2 of dry friction, and 0.8 m/s^2 sin(5 s/m w), beside which it seems to be forced periodically.

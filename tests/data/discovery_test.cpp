@@ -270,6 +270,8 @@ Ladder example_ladder() {
   second.parameters = {{"c_coning", {1.02, 0.03, "-"}}};
   second.trim.reset();
   second.note = "words";
+  second.gain_of_search = 27.7;
+  second.remained = "an unknown curve dw/dt(w)";
   ladder.rungs = {first, second};
   return ladder;
 }
@@ -358,6 +360,9 @@ TEST(LadderFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(second.parameters.at("c_coning").sigma, 0.03);
   EXPECT_FALSE(second.trim.has_value());
   EXPECT_EQ(second.note, "words");
+  EXPECT_EQ(second.gain_of_search, 27.7);
+  EXPECT_EQ(second.remained, "an unknown curve dw/dt(w)");
+  EXPECT_FALSE(back.rungs[0].remained.has_value());
 }
 
 TEST(LadderFile, ABrokenFileIsNamed) {

@@ -52,6 +52,13 @@ TEST(DiscoverGeneric, NamesAHiddenCoulombFriction) {
   expect_first(found, first == "hasty_friction" ? first : "coulomb_friction", "friction", 1.5, 0.2);
 }
 
+/// Forces of 15 N RMS, of which the first 4 N do nothing.
+TEST(DiscoverGeneric, FindsTheBandOfAnInputThatDoesNotAct) {
+  const Discovery found = in_cart("input_dead_zone", {{"dead_gain", 1.0}, {"half_band", 4.0}});
+  expect_first(found, "input_dead_zone", "half_band", 4.0, 0.1);
+  EXPECT_NEAR(found.candidates.front().parameters.at("dead_gain").value, 1.0, 0.02) << "the force acts on the mass with its gain of 1";
+}
+
 /// The share that is late can be traded for the time constant while that is short: an actuator is late as a whole or not at all.
 TEST(DiscoverGeneric, FindsTheWholeLagOfAnActuator) {
   const Discovery found = in_cart("input_lag", {{"lagged_gain", 1.0}, {"input_tau", 0.06}});

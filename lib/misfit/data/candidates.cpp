@@ -131,13 +131,14 @@ std::size_t curves_tested(const Discovery& discovery) {
   return static_cast<std::size_t>(std::count_if(discovery.candidates.begin(), discovery.candidates.end(), is_tested_curve));
 }
 
+double gain_in_all(const Candidate& candidate) { return 0.5 * candidate.actual_drop.value_or(0.0) + candidate.held_out_gain.value_or(0.0); }
+
 const Candidate* candidate_to_begin_with(const Discovery& discovery) {
-  const auto gain = [](const Candidate& c) { return 0.5 * *c.actual_drop + *c.held_out_gain; };
   const Candidate* best = nullptr;
   for (const Candidate& c : discovery.candidates) {
     const bool there = std::find(c.ports.begin(), c.ports.end(), discovery.unexplained_port) != c.ports.end();
     if (!there || !c.remaining || !c.actual_drop || !c.held_out_gain) continue;
-    if (best == nullptr || gain(c) > gain(*best)) best = &c;
+    if (best == nullptr || gain_in_all(c) > gain_in_all(*best)) best = &c;
   }
   if (best == nullptr) return nullptr;
   const double drop = *best->actual_drop;

@@ -117,9 +117,12 @@ struct Discovery {
   double seconds = 0.0;
 };
 
-/// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain of the
-/// log-likelihood on the measurements of the estimation and on those held out, of those that act where the model fails. nullptr: there is
-/// none, a curve of unknown form explains more, or a refitted candidate that is refused more than twice as much.
+/// Log-likelihood that a refitted candidate gains on the measurements of the estimation and on those held out.
+[[nodiscard]] double gain_in_all(const Candidate& candidate);
+
+/// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain
+/// (gain_in_all) of those that act where the model fails. nullptr: there is none, a curve of unknown form explains more, or a refitted
+/// candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
 
 /// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.

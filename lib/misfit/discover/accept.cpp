@@ -96,8 +96,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   for (RankedCandidate* e : members) e->candidate.group = group;
 }
 
-/// Log-likelihood that a refitted effect gains on the measurements of the estimation and on those held out.
-double gain_of(const RankedCandidate& e) { return 0.5 * e.refit->drop + e.candidate.held_out_gain.value_or(0.0); }
+double gain_of(const RankedCandidate& e) { return gain_in_all(e.candidate); }
 
 /// What decided between one that is not refused and the accepted one (steps 5 and 7).
 std::string why_not_before(const RankedCandidate& other, const RankedCandidate& best) {

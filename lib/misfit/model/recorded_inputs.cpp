@@ -10,16 +10,15 @@
 namespace misfit {
 namespace {
 
-/// A straight line at a time.
-struct Line {
-  double value = 0.0, slope = 0.0;
-};
-
-/// A cubic from one sample to the next by values and slopes of both (Hermite), at a share of the way.
-RunningInput cubic_between(const Line& from, const Line& to, double share, double length) {
-  const double rest = 1.0 - share, chord = (to.value - from.value) / length;
-  const double bend_from = from.slope - chord, bend_to = to.slope - chord;  // beside the straight line
-  return {from.value + share * (to.value - from.value) + share * rest * length * (rest * bend_from - share * bend_to),
+/// From one instant to the next, each with the input's value and rate there, at a share of the way of `length` [s]; a band limited one by
+/// both rates (Hermite's cubic).
+RunningInput run_between(Hold hold, const RunningInput& from, const RunningInput& to, double share, double length) {
+  if (hold == Hold::zero_order) return {from.value, 0.0};
+  const double change = to.value - from.value, chord = change / length;
+  const RunningInput line{from.value + share * change, chord};
+  if (hold == Hold::first_order) return line;
+  const double rest = 1.0 - share, bend_from = from.rate - chord, bend_to = to.rate - chord;
+  return {line.value + share * rest * length * (rest * bend_from - share * bend_to),
           chord + rest * (1.0 - 3.0 * share) * bend_from - share * (2.0 - 3.0 * share) * bend_to};
 }
 
@@ -50,11 +49,9 @@ Eigen::VectorXd slopes_of_spline(const std::vector<double>& t, const Eigen::Vect
 /// One input of a record as a function of time.
 class InputInTime {
  public:
-  InputInTime(const RecordedInputs& record, int input)
-      : record_(record),
-        input_(input),
-        held_(record.hold[input] == Hold::zero_order),
-        bends_(record.hold[input] == Hold::band_limited && !record.slopes.empty()) {}
+  InputInTime(const RecordedInputs& record, int input) : record_(record), input_(input), hold_(record.hold[input]) {
+    if (hold_ == Hold::band_limited && record.slopes.empty()) hold_ = Hold::first_order;
+  }
 
   /// Last sample not after `time`, the first one before the record.
   [[nodiscard]] std::size_t sample_at(double time) const { return std::max<std::size_t>(samples_until(time), 1) - 1; }
@@ -64,20 +61,17 @@ class InputInTime {
     return next == record_.t.size() ? std::numeric_limits<double>::infinity() : record_.t[next];
   }
 
-  /// Value and slope between samples k and k + 1: held, as a straight line, or as a band limited input runs.
-  [[nodiscard]] Line between(std::size_t k, double time, bool held) const {
-    const double value = record_.value(k, input_);
-    if (held || k + 1 >= record_.t.size() || time <= record_.t[k]) return {value, 0.0};
-    if (bends_) {
-      const double length = record_.t[k + 1] - record_.t[k];
-      const RunningInput u = cubic_between(sample(k), sample(k + 1), (time - record_.t[k]) / length, length);
-      return {u.value, u.rate};
-    }
-    const double slope = (record_.value(k + 1, input_) - value) / (record_.t[k + 1] - record_.t[k]);
-    return {value + slope * (time - record_.t[k]), slope};
+  /// Between samples k and k + 1.
+  [[nodiscard]] RunningInput between(std::size_t k, double time, Hold hold) const {
+    if (k + 1 >= record_.t.size() || time <= record_.t[k]) return {record_.value(k, input_), 0.0};
+    const double length = record_.t[k + 1] - record_.t[k];
+    return run_between(hold, sample(k), sample(k + 1), (time - record_.t[k]) / length, length);
   }
-  [[nodiscard]] double at(double time) const { return between(sample_at(time), time, held_).value; }
-  [[nodiscard]] Line linearly(double time) const { return between(sample_at(time), time, false); }
+  [[nodiscard]] double at(double time) const { return between(sample_at(time), time, hold_).value; }
+  /// Not held: linearly, or as a band limited input runs.
+  [[nodiscard]] RunningInput running(double time) const {
+    return between(sample_at(time), time, hold_ == Hold::zero_order ? Hold::first_order : hold_);
+  }
 
   /// ∫ u dt and ∫ (t − middle) u dt from `begin` to `end`.
   struct Moments {
@@ -88,7 +82,7 @@ class InputInTime {
     Moments out;
     for (double from = begin; from < end;) {
       const double to = std::min(end, next_sample_after(from));
-      const Moments part = bends_ ? of_cubic(from, to, middle) : of_line(from, to, middle);
+      const Moments part = hold_ == Hold::band_limited ? of_cubic(from, to, middle) : of_line(from, to, middle);
       out.zeroth += part.zeroth;
       out.first += part.first;
       from = to;
@@ -100,8 +94,8 @@ class InputInTime {
   /// Within an interval between two samples: the straight line about its own middle.
   [[nodiscard]] Moments of_line(double from, double to, double middle) const {
     const double m = 0.5 * (from + to), length = to - from;
-    const Line line = between(sample_at(m), m, held_);
-    return {length * line.value, length * ((m - middle) * line.value + length * length * line.slope / 12.0)};
+    const RunningInput line = between(sample_at(m), m, hold_);
+    return {length * line.value, length * ((m - middle) * line.value + length * length * line.rate / 12.0)};
   }
   /// By Gauss's rule of three points (Abramowitz and Stegun, Handbook (1964), table 25.4), exact for a cubic.
   [[nodiscard]] Moments of_cubic(double from, double to, double middle) const {
@@ -111,14 +105,17 @@ class InputInTime {
     const std::size_t k = sample_at(m);
     Moments out;
     for (const auto& [at, weight] : points) {
-      const double time = m + half * at, part = half * weight * between(k, time, false).value;
+      const double time = m + half * at, part = half * weight * between(k, time, hold_).value;
       out.zeroth += part;
       out.first += (time - middle) * part;
     }
     return out;
   }
 
-  [[nodiscard]] Line sample(std::size_t k) const { return {record_.value(k, input_), record_.slopes[k * record_.stride() + input_]}; }
+  [[nodiscard]] RunningInput sample(std::size_t k) const {
+    const std::size_t at = k * record_.stride() + input_;
+    return {record_.values[at], hold_ == Hold::band_limited ? record_.slopes[at] : 0.0};
+  }
 
   /// How many samples are not after `time`. In an evenly sampled record they are known by their number.
   [[nodiscard]] std::size_t samples_until(double time) const {
@@ -135,7 +132,7 @@ class InputInTime {
 
   const RecordedInputs& record_;
   int input_;
-  bool held_, bends_;
+  Hold hold_;
 };
 
 }  // namespace
@@ -153,11 +150,9 @@ void set_slopes(RecordedInputs& record) {
 }
 
 RunningInput input_within(Hold hold, const InputsAt& begin, const InputsAt& end, int i, double share, double length) {
-  if (hold == Hold::zero_order) return {begin.values[i], 0.0};
-  if (hold == Hold::band_limited && begin.slopes != nullptr && end.slopes != nullptr)
-    return cubic_between({begin.values[i], begin.slopes[i]}, {end.values[i], end.slopes[i]}, share, length);
-  const double change = end.values[i] - begin.values[i];
-  return {begin.values[i] + share * change, change / length};
+  const bool known = begin.slopes != nullptr && end.slopes != nullptr;
+  const auto at = [&](const InputsAt& instant) { return RunningInput{instant.values[i], known ? instant.slopes[i] : 0.0}; };
+  return run_between(hold == Hold::band_limited && !known ? Hold::first_order : hold, at(begin), at(end), share, length);
 }
 
 LateInput late_input(const InputsAt& inputs, int input, double t, double delay) {
@@ -165,8 +160,8 @@ LateInput late_input(const InputsAt& inputs, int input, double t, double delay) 
   const InputInTime u(*inputs.record, input);
   const double begin = std::min(inputs.from, inputs.to), length = std::abs(inputs.to - inputs.from);
   if (!(length > 0.0)) {
-    const Line then = u.linearly(t - delay);
-    return {then.value, -then.slope};
+    const RunningInput then = u.running(t - delay);
+    return {then.value, -then.rate};
   }
   // u ≈ a + b (t − middle): a = M0/h, b = 12 M1/h³ with the moments of the earlier interval. By the delay: M0' = −(u(end) − u(begin)),
   // M1' = −h/2 (u(end) + u(begin)) + M0.

@@ -31,8 +31,8 @@ struct StateSpec {
 };
 
 /// How an input runs between its samples: constant, as a straight line, or as a cubic spline through all of them, close to the signal
-/// without content above half the sampling rate that has these samples (Ljung, System Identification (1999), 13.3; Ljung's toolbox: 'zoh',
-/// 'foh', 'bl').
+/// without content above half the sampling rate that has these samples (Pintelon and Schoukens, System Identification: A Frequency Domain
+/// Approach (2001): the zero-order-hold and the band-limited assumption).
 enum class Hold { zero_order, first_order, band_limited };
 struct InputSpec {
   std::string name, unit, doc;
