@@ -13,6 +13,7 @@
 #include "misfit/discover/accept.h"
 #include "misfit/discover/added_force.h"
 #include "misfit/discover/candidate.h"
+#include "misfit/discover/conditional.h"
 #include "misfit/discover/fixed_parameters.h"
 #include "misfit/discover/free_run.h"
 #include "misfit/discover/lack_of_fit.h"
@@ -58,11 +59,10 @@ class Search {
       refit_what_the_free_run_shows();
       refit_what_fell_short();
       if (options_.refits && !ranks().first()) return {};
-      const SearchContext context{estimate_, registry_, experiments_, options_, families_};
-      unexplained = accept_best(ranked_, unknown_, context);
-      if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context);
-      if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context);
-      if (none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context);
+      unexplained = accept_best(ranked_, unknown_, context());
+      if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context());
+      if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context());
+      if (none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context());
       test_fixed_parameters();
     } catch (const TimeLimitReached& limit) {
       spent = limit.what();
@@ -129,13 +129,8 @@ class Search {
             .threads = options_.threads,
             .calibrated = options_.calibration != nullptr};
   }
-  RefitWork refit_work() const {
-    return {.without = estimate_,
-            .experiments = experiments_,
-            .registry = registry_,
-            .threads = options_.threads,
-            .time_limit = options_.refit_limit};
-  }
+  SearchContext context() const { return {estimate_, registry_, experiments_, options_, families_}; }
+  RefitWork refit_work() const { return work_from(estimate_, context()); }
 
   /// Every rank comes to the refits, which are shared: none is stopped before.
   void screen_all() {
