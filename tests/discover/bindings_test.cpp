@@ -57,6 +57,21 @@ TEST(Bindings, LevelsOfOneUnitMayExchange) {
 }
 
 /// A force elsewhere would not show in that output.
+TEST(Bindings, AnInputMultipliesStatesAndDifferencesOfLevels) {
+  EXPECT_THAT(bindings("bilinear", "test_oscillator"), ElementsAre(Roles{}, Roles{{"factor", "v"}, {"input", "drive"}, {"port", "force"}},
+                                                                   Roles{{"factor", "x"}, {"input", "drive"}, {"port", "force"}}));
+  EXPECT_THAT(bindings("bilinear_exchange", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"input", "u"}, {"level", "x1"}, {"other", "x2"}, {"port", "dx1/dt"}},
+                          Roles{{"input", "u"}, {"level", "x2"}, {"other", "x1"}, {"port", "dx2/dt"}}));
+  SystemSpec tank = registry().system("test_tanks").make({})->spec();
+  std::erase_if(tank.states, [](const StateSpec& state) { return state.name == "x2"; });
+  std::erase_if(tank.dynamic_ports, [](const auto& port) { return port.conjugate == "x2"; });
+  tank.inputs.push_back({.name = "outside", .unit = "m", .doc = "level outside"});
+  EXPECT_THAT(enumerate_bindings(registry().effect("bilinear_exchange").spec(), tank),
+              ElementsAre(Roles{}, Roles{{"input", "u"}, {"level", "x1"}, {"other", "outside"}, {"port", "dx1/dt"}}))
+      << "an input may be the other level, but does not multiply itself";
+}
+
 TEST(Bindings, AnInputThatAnOutputsFormulaReadsIsAPlaceOfItsOwn) {
   SystemSpec tanks = registry().system("test_tanks").make({})->spec();
   const std::string input = tanks.inputs.front().name;

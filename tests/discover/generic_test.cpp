@@ -59,6 +59,20 @@ TEST(DiscoverGeneric, FindsTheBandOfAnInputThatDoesNotAct) {
   EXPECT_NEAR(found.candidates.front().parameters.at("dead_gain").value, 1.0, 0.02) << "the force acts on the mass with its gain of 1";
 }
 
+TEST(DiscoverGeneric, FindsADampingThatAnInputSets) {
+  const Signals recorded = record_of_cart({effect("bilinear", {{"factor", "v"}})}, {{"product", -0.05}, {"neutral", 0.0}});
+  const Discovery found = discovered(cart({effect("viscous_friction")}), {"stiffness"}, recorded);
+  expect_first(found, "bilinear", "product", -0.05, 0.1);
+  EXPECT_EQ(found.candidates.front().roles.at("factor"), "v");
+}
+
+/// A pump that stirs: the faster it runs, the more the levels exchange.
+TEST(DiscoverGeneric, FindsAnExchangeThatAnInputSets) {
+  const EffectRequest stirred = effect("bilinear_exchange", {{"level", "x2"}, {"other", "x1"}, {"input", "u"}, {"port", "dx2/dt"}});
+  const Discovery found = in_tanks({stirred}, {{"exchange_per_input", 0.004}});
+  expect_first(found, "bilinear_exchange", "exchange_per_input", 0.004, 0.2);
+}
+
 /// The share that is late can be traded for the time constant while that is short: an actuator is late as a whole or not at all.
 TEST(DiscoverGeneric, FindsTheWholeLagOfAnActuator) {
   const Discovery found = in_cart("input_lag", {{"lagged_gain", 1.0}, {"input_tau", 0.06}});

@@ -185,7 +185,9 @@ TEST_P(EffectLaws, ScansNameWhatTheyAreSharesOfAndLieInsideBounds) {
       continue;
     }
     EXPECT_GT(c.scan.from, 0.0) << c.name << ": shares of a size";
-    const std::string role = over.front() == '|' ? over.substr(1, over.size() - 2) : over.starts_with("+-") ? over.substr(2) : over;
+    const std::string role = over.front() == '|'                                ? over.substr(1, over.size() - 2)
+                             : over.starts_with("+-") || over.starts_with("0 ") ? over.substr(2)
+                                                                                : over;
     EXPECT_TRUE(role == "step" || role == "1/step" ||
                 std::any_of(spec_.quantities.begin(), spec_.quantities.end(), [&](const Role& r) { return role == r.name; }))
         << c.name << " is looked for over '" << over << "'";

@@ -218,7 +218,7 @@ Choice or_a_better_pair(std::vector<RankedCandidate>& ranked, const Choice& choi
 
 /// Of two imitations that are missing together, the one that explains more by itself is chosen.
 Choice larger_of_two(const Place at, const Pair& pair, std::vector<RankedCandidate>& ranked) {
-  const Place second = ranked.begin() + (pair.second - ranked.data());
+  const auto second = ranked.begin() + (pair.second - ranked.data());
   if (!second->candidate.remaining || !(second->refit->drop > at->refit->drop)) return {at, pair};
   Pair swapped = pair;
   swapped.second = &*at;

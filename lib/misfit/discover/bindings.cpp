@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <set>
 #include <string_view>
 
 #include "misfit/core/units.h"
@@ -79,20 +80,23 @@ std::optional<Roles> roles_at(const EffectSpec& effect, const Roles& place) {
         out[role.name] = found->second;
         continue;
       }
-      constexpr std::array<std::string_view, 7> kinds = {"rate", "displacement", "level", "content", "other", "port", "to_port"};
+      constexpr std::array<std::string_view, 8> kinds = {"rate", "displacement", "level", "content", "other", "factor", "port", "to_port"};
       if (!role.optional && std::find(kinds.begin(), kinds.end(), role.name) != kinds.end()) return std::nullopt;
     }
   }
   return out;
 }
 
-/// Each place once per value of a further role.
+/// Each place once per value of a further role. Nothing spills into itself, nor does an input drive the exchange with itself.
 std::vector<Roles> times(const std::vector<Roles>& places, const std::string& role, const std::vector<std::string>& values) {
+  const auto plays = [](const Roles& place, const char* part, const std::string& value) {
+    const auto found = place.find(part);
+    return found != place.end() && found->second == value;
+  };
   std::vector<Roles> out;
   for (const Roles& place : places) {
     for (const std::string& value : values) {
-      const auto port = place.find("port");
-      if (port != place.end() && port->second == value) continue;  // nothing spills into itself
+      if (plays(place, "port", value) || plays(place, "other", value)) continue;
       out.push_back(place);
       out.back()[role] = value;
     }
@@ -116,20 +120,37 @@ std::vector<Roles> with_inputs_that_displace(std::vector<Roles> places, const Sy
   return places;
 }
 
-bool input_may_displace(const EffectSpec& effect) {
-  return std::any_of(effect.quantities.begin(), effect.quantities.end(), [](const Role& r) { return r.input_too; });
+bool may_be_an_input(const EffectSpec& effect, std::string_view role) {
+  return std::any_of(effect.quantities.begin(), effect.quantities.end(), [&](const Role& r) { return r.input_too && role == r.name; });
 }
 
-/// Each place once per other state of the unit that its level has.
-std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
+/// Each place once per other state, and input where `inputs_too`, of the unit that its level has.
+std::vector<Roles> times_other_levels(const std::vector<Roles>& places, const SystemSpec& system, bool inputs_too) {
   std::vector<Roles> out;
   for (const Roles& place : places) {
     const StateSpec* level = place.contains("level") ? state_called(system, place.at("level")) : nullptr;
     if (level == nullptr) continue;
-    for (const StateSpec& state : system.states) {
-      if (state.name == level->name || !parse_unit(state.unit).same_dimension(parse_unit(level->unit))) continue;
+    const auto add = [&](const auto& other) {
+      if (other.name == level->name || !parse_unit(other.unit).same_dimension(parse_unit(level->unit))) return;
       out.push_back(place);
-      out.back()["other"] = state.name;
+      out.back()["other"] = other.name;
+    };
+    for (const StateSpec& state : system.states) add(state);
+    if (!inputs_too) continue;
+    for (const InputSpec& input : system.inputs) add(input);
+  }
+  return out;
+}
+
+/// Each place once per state that plays a part in it.
+std::vector<Roles> times_factors(const std::vector<Roles>& places) {
+  std::vector<Roles> out;
+  for (const Roles& place : places) {
+    std::set<std::string> factors;
+    for (const char* role : {"rate", "level"}) {
+      if (!place.contains(role) || !factors.insert(place.at(role)).second) continue;
+      out.push_back(place);
+      out.back()["factor"] = place.at(role);
     }
   }
   return out;
@@ -200,13 +221,14 @@ std::optional<OperatingRange::Range> range_of(std::vector<double> values) {
 
 /// What ScanSpec::over says: of which role, and what of it.
 struct ScannedSize {
-  enum class Kind { range, largest, half_range } kind = Kind::range;
+  enum class Kind { range, largest, half_range, nearest_zero } kind = Kind::range;
   std::string_view role;
 };
 ScannedSize scanned_size(const ScanSpec& scan) {
   const std::string_view over = scan.over;
   if (over.size() > 2 && over.starts_with('|') && over.ends_with('|')) return {ScannedSize::Kind::largest, over.substr(1, over.size() - 2)};
   if (over.starts_with("+-")) return {ScannedSize::Kind::half_range, over.substr(2)};
+  if (over.starts_with("0 ")) return {ScannedSize::Kind::nearest_zero, over.substr(2)};
   return {ScannedSize::Kind::range, over};
 }
 
@@ -221,6 +243,7 @@ int scanned_quantity(const BoundEffect& effect, const ScanSpec& scan) {
 /// What the numbers of a scan are shares of.
 double unit_of_scan(const ScannedSize& size, const OperatingRange::Range& range) {
   const double width = range.high - range.low;
+  if (size.kind == ScannedSize::Kind::nearest_zero) return std::clamp(0.0, range.low, range.high);
   if (size.kind == ScannedSize::Kind::half_range) return 0.5 * width;
   return size.kind == ScannedSize::Kind::largest ? std::max(std::abs(range.low), std::abs(range.high)) : width;
 }
@@ -280,13 +303,14 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};
   if (has_role(effect.ports, "port") || has_role(effect.ports, "to_port")) places = natural_ports(system);
-  if (input_may_displace(effect)) places = with_inputs_that_displace(std::move(places), system);
+  if (may_be_an_input(effect, "displacement")) places = with_inputs_that_displace(std::move(places), system);
   if (has_role(effect.ports, "to_port")) {
     std::vector<std::string> ports;
     for (const Roles& place : places) ports.push_back(place.at("port"));
     places = times(places, "to_port", ports);
   }
-  if (has_role(effect.quantities, "other")) places = times_other_states(places, system);
+  if (has_role(effect.quantities, "other")) places = times_other_levels(places, system, may_be_an_input(effect, "other"));
+  if (has_role(effect.quantities, "factor")) places = times_factors(places);
   if (has_role(effect.quantities, "input")) {
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
     if (has_role(effect.ports, "port")) {

@@ -51,6 +51,7 @@ class Roles {
     if (level >= 0 || d_.roles->has("rate")) s.roles["rate"] = moving;
     s.roles["level"] = role("level", level < 0 ? moving : s.states[level].name, quantities);
     if (level >= 0) s.roles["displacement"] = s.roles["level"];
+    s.roles["factor"] = moving;
     if (level < 0 || d_.roles->has("content")) s.roles["content"] = role("content", moving, quantities);
     set_other_level();
   }

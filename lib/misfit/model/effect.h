@@ -51,7 +51,7 @@ struct Role {
   /// Of an optional role: the name of the one that it completes (the lateral part of a rate). Where a study binds that one alone, this one
   /// is not bound.
   const char* completes = "";
-  /// Of a role `displacement`: it may also stand for an input of the same unit, as for play between an actuator and what it moves.
+  /// Of `displacement` and `other`: it may also stand for an input of the same unit: play after an actuator, heat to measured surroundings.
   bool input_too = false;
   /// The coefficient that is the delay with which it is read (Reads::late()): it must then stand for an input of the system.
   const char* late_by = "";
@@ -63,8 +63,8 @@ struct ScanSpec {
   int count =
       0;  ///< values, ends included; −1: a frequency [Hz], steps of 1/(4T); 0: not scanned: allowed for fixed and shared shapes only
   /// What `from` and `to` are shares of, where sizes are not known beforehand. "level" (a role): of its operating range, 0 its lower, 1 its
-  /// upper end; in equal ratios "|level|": of its largest size, "+-level": of half of its range, for what depends on how far it moves and
-  /// not on where, "step": of the sampling interval, "1/step": of the sampling rate. "": plain numbers [unit].
+  /// upper end; "|level|", in equal ratios: of its largest size, "+-level": of half of its range, for what depends on how far it moves and
+  /// not where, "0 level": of its value nearest to 0, "step": of the sampling interval, "1/step": of the sampling rate. "": plain numbers.
   const char* over = "";
   /// It is the width over which a corner or a step is rounded, in the quantity that `over` names. It is then scanned and estimated no
   /// narrower than sqrt(π/2) times the filter's standard error of that quantity: the filter linearises at one point, and of a corner that

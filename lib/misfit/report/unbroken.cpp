@@ -33,7 +33,7 @@ bool ends_a_number(std::string_view word) {
     if (const std::size_t at = word.find(sign); at < 2) word.remove_prefix(at + sign.size());
   }
   while (word.starts_with('(') || word.starts_with('+') || word.starts_with('<')) word.remove_prefix(1);
-  if (word.empty() || !is_digit(word.front()) || !(is_digit(word.back()) || word.back() == ')')) return false;
+  if (word.empty() || !is_digit(word.front()) || (!is_digit(word.back()) && word.back() != ')')) return false;
   for (std::size_t at = 0; at < word.size(); ++at) {
     if (word.substr(at).starts_with(minus)) {
       at += minus.size() - 1;
