@@ -127,6 +127,21 @@ void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::
   out.priors.mean[i] = mean;
 }
 
+bool of_clocks(const EffectSpec& effect) {
+  return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& role) {
+    return std::string_view(role.name) == all_sample_times || std::string_view(role.name) == "time_of_output";
+  });
+}
+
+/// As far off as a clock is looked for. Each sample is then predicted from so many steps away, and what the slope of the outputs in time
+/// says about it holds for a few samples only.
+void bound_offset_of_clock(double step, Parameter& offset) {
+  constexpr double steps = 40.0;
+  if (!(step > 0.0) || offset.unit != "s") return;
+  offset.lower = std::max(offset.lower, -steps * step);
+  offset.upper = std::min(offset.upper, steps * step);
+}
+
 void fill(const Effect& effect, const Calibration* calibration, const OperatingRange& operating_range, CandidateModel& out) {
   const BoundEffect& bound = out.model.effects.back();
   const auto& coefficients = effect.spec().coefficients;
@@ -141,6 +156,7 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
       p.value = 0.0;
       out.strengths.push_back(parameter);
       p.lower = std::max(p.lower, coefficients[c].lower_as_candidate);
+      if (of_clocks(effect.spec())) bound_offset_of_clock(operating_range.step(), p);
       out.one_sided.push_back(p.lower >= 0.0);
       strength_specs.push_back(&coefficients[c]);
     } else if (coefficients[c].scan.count > 0) {

@@ -125,7 +125,9 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
   for (std::size_t i = 0; i < candidate_model.strengths.size(); ++i) {
     Parameter& p = model.parameters[candidate_model.strengths[i]];
     const Eigen::Index k = i;
-    p.lower = candidate_model.model.parameters[candidate_model.strengths[i]].lower;
+    const Parameter& as_candidate = candidate_model.model.parameters[candidate_model.strengths[i]];
+    p.lower = as_candidate.lower;
+    p.upper = as_candidate.upper;
     p.value = std::clamp(screening.result.amplitude[k], p.lower, p.upper);
     p.free = true;
     if (candidate_model.priors.precision[k] > 0.0) {

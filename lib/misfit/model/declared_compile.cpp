@@ -57,11 +57,12 @@ class Compiler {
     n.np = n.nu + int_size(spec().quantities);
     own_ports_ = int_size(spec().dynamic_ports);
     n.nf = own_ports_ + n.nx;
-    for (const auto& state : spec().states)
+    for (const auto& state : spec().states) {
       spec().dynamic_ports.push_back({.name = "d" + state.name + "/dt",
                                       .unit = rate_unit(state.unit),
                                       .doc = "added to the rate of " + state.name,
                                       .conjugate = state.name});
+    }
     for (int i = 0; i < n.nx; ++i) state_nodes_.push_back(state_node(i));
     for (int i = 0; i < n.nu; ++i) input_nodes_.push_back(graph().add(graph().leaf(n.u(i)), graph().leaf(n.P(i))));
     quantity_nodes_.assign(spec().quantities.size(), unbuilt);

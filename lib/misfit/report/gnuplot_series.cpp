@@ -55,7 +55,6 @@ std::string look(const Series& s) {
     case Style::points:
       return "with points pt 7 ps 0.28 " + colour;
     case Style::markers:
-      return "with points pt 7 ps 0.6 " + colour;
     case Style::error_bars:
       return "with points pt 7 ps 0.6 " + colour;
     case Style::x_bars:
@@ -67,7 +66,6 @@ std::string look(const Series& s) {
     case Style::steps:
       return fmt::format("with steps lw {} {}", s.width, colour);
     case Style::boxes:
-      return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.6 border lc rgb '" + s.colour + "'";
     case Style::bars:
       return "with boxxyerror fc rgb '" + s.colour + "' fs transparent solid 0.6 border lc rgb '" + s.colour + "'";
     case Style::cells:

@@ -18,7 +18,7 @@ bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0;
 
 /// Whether the hyphen at `at` is the sign of a number or of its exponent.
 bool is_sign(const std::string& text, std::size_t at) {
-  if (at + 1 >= text.size() || !(is_digit(text[at + 1]) || text[at + 1] == '.')) return false;
+  if (at + 1 >= text.size() || (!is_digit(text[at + 1]) && text[at + 1] != '.')) return false;
   if (at == 0) return true;
   const std::string_view so_far = std::string_view(text).substr(0, at);
   for (const std::string_view before : {" "sv, "("sv, "["sv, "<"sv, "|"sv, "≈"sv, plus_minus, no_break}) {
