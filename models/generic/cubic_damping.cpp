@@ -26,7 +26,8 @@ struct CubicDamping {
        .lower = -1e15,
        .upper = 1e15,
        .scale = 0.1,
-       .doc = "force per cube of the rate; positive takes energy out"},
+       .doc = "force per cube of the rate; positive takes energy out",
+       .lower_as_candidate = 0.0},  // less than none at high rates imitates dry friction
   };
 
   template <class T, class K>

@@ -59,6 +59,13 @@ TEST(DiscoverGeneric, FindsTheBandOfAnInputThatDoesNotAct) {
   EXPECT_NEAR(found.candidates.front().parameters.at("dead_gain").value, 1.0, 0.02) << "the force acts on the mass with its gain of 1";
 }
 
+/// The forces jump by tens of newtons, which takes the actuator several of the samples of 50 ms.
+TEST(DiscoverGeneric, FindsHowFastAnActuatorIs) {
+  const Discovery found = in_cart("rate_limit", {{"limited_gain", 1.0}, {"rate_limit", 60.0}, {"follow_time", 0.025}});
+  expect_first(found, "rate_limit", "rate_limit", 60.0, 0.05);
+  EXPECT_NEAR(found.candidates.front().parameters.at("limited_gain").value, 1.0, 0.02) << "the force acts on the mass with its gain of 1";
+}
+
 TEST(DiscoverGeneric, FindsADampingThatAnInputSets) {
   const Signals recorded = record_of_cart({effect("bilinear", {{"factor", "v"}})}, {{"product", -0.05}, {"neutral", 0.0}});
   const Discovery found = discovered(cart({effect("viscous_friction")}), {"stiffness"}, recorded);

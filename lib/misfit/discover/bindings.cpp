@@ -221,11 +221,14 @@ std::optional<OperatingRange::Range> range_of(std::vector<double> values) {
 
 /// What ScanSpec::over says: of which role, and what of it.
 struct ScannedSize {
-  enum class Kind { range, largest, half_range, nearest_zero } kind = Kind::range;
+  enum class Kind { range, largest, half_range, nearest_zero, per_step } kind = Kind::range;
   std::string_view role;
 };
 ScannedSize scanned_size(const ScanSpec& scan) {
   const std::string_view over = scan.over;
+  constexpr std::string_view per_step = "|/step";
+  if (over.starts_with('|') && over.ends_with(per_step))
+    return {ScannedSize::Kind::per_step, over.substr(1, over.size() - 1 - per_step.size())};
   if (over.size() > 2 && over.starts_with('|') && over.ends_with('|')) return {ScannedSize::Kind::largest, over.substr(1, over.size() - 2)};
   if (over.starts_with("+-")) return {ScannedSize::Kind::half_range, over.substr(2)};
   if (over.starts_with("0 ")) return {ScannedSize::Kind::nearest_zero, over.substr(2)};
@@ -241,11 +244,12 @@ int scanned_quantity(const BoundEffect& effect, const ScanSpec& scan) {
 }
 
 /// What the numbers of a scan are shares of.
-double unit_of_scan(const ScannedSize& size, const OperatingRange::Range& range) {
-  const double width = range.high - range.low;
+double unit_of_scan(const ScannedSize& size, const OperatingRange::Range& range, double step) {
+  const double width = range.high - range.low, largest = std::max(std::abs(range.low), std::abs(range.high));
+  if (size.kind == ScannedSize::Kind::per_step) return step > 0.0 ? largest / step : largest;
   if (size.kind == ScannedSize::Kind::nearest_zero) return std::clamp(0.0, range.low, range.high);
   if (size.kind == ScannedSize::Kind::half_range) return 0.5 * width;
-  return size.kind == ScannedSize::Kind::largest ? std::max(std::abs(range.low), std::abs(range.high)) : width;
+  return size.kind == ScannedSize::Kind::largest ? largest : width;
 }
 
 /// Samples per second where none is missing. Of many samples: times printed with few digits have no exact interval.
@@ -413,7 +417,7 @@ std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t 
     const auto range = this->range(scanned_quantity(effect, c.scan));
     if (!range) return {c.value};
     origin = size ? 0.0 : range->low;
-    unit = unit_of_scan(scanned_size(c.scan), *range);
+    unit = unit_of_scan(scanned_size(c.scan), *range, step_);
   }
   std::vector<double> out;
   for (int i = 0; i < c.scan.count; ++i) {

@@ -63,8 +63,8 @@ struct ScanSpec {
   int count =
       0;  ///< values, ends included; −1: a frequency [Hz], steps of 1/(4T); 0: not scanned: allowed for fixed and shared shapes only
   /// What `from` and `to` are shares of, where sizes are not known beforehand. "level" (a role): of its operating range, 0 its lower, 1 its
-  /// upper end; "|level|", in equal ratios: of its largest size, "+-level": of half of its range, for what depends on how far it moves and
-  /// not where, "0 level": of its value nearest to 0, "step": of the sampling interval, "1/step": of the sampling rate. "": plain numbers.
+  /// upper end; in equal ratios "|level|": of its largest size, "|level|/step": of that per sampling interval, "+-level": of half its
+  /// range, "0 level": of its value nearest to 0, "step": of the sampling interval, "1/step": of the rate. "": plain numbers.
   const char* over = "";
   /// It is the width over which a corner or a step is rounded, in the quantity that `over` names. It is then scanned and estimated no
   /// narrower than sqrt(π/2) times the filter's standard error of that quantity: the filter linearises at one point, and of a corner that

@@ -240,6 +240,26 @@ double Dice::draw(const Draw& d) {
   return d.either_sign && uniform(0, 1) < 0.5 ? -value : value;
 }
 
+namespace {
+
+bool stays_finite(const Record& record) {
+  return std::all_of(record.outputs.begin(), record.outputs.end(),
+                     [](const auto& y) { return std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); }); });
+}
+
+/// A spring that softens lets go beyond some excursion: of what is hidden in the plant half as much, until the motion is one.
+void weaken_until_the_motion_stays(World& world) {
+  constexpr int most = 20;
+  for (int i = 0; i < most && !stays_finite(simulate(world)); ++i) {
+    for (auto& hidden : world.hidden) {
+      if (hidden.effect.site != Site::plant) continue;
+      for (auto& [name, value] : hidden.values.numbers) value *= 0.5;
+    }
+  }
+}
+
+}  // namespace
+
 World draw_world(const System& system, int seed) {
   World world;
   world.system = &system;
@@ -267,6 +287,7 @@ World draw_world(const System& system, int seed) {
       hidden.values.numbers[d.name] = si_of(d.name, own.draw(d), hidden.effect, world, quiet);
     }
   }
+  weaken_until_the_motion_stays(world);
   return world;
 }
 

@@ -65,7 +65,7 @@ TEST(Strangers, UndampedOscillatorKeepsItsEnergy) {
 
 TEST(Strangers, TheSameSeedGivesTheSameWorldAndEverySystemRuns) {
   for (const System& system : all_systems()) {
-    for (int seed = 0; seed < 4; ++seed) {
+    for (const int seed : {0, 1, 2, 3, 236}) {  // 236: drawn as it comes, the servo's spring lets go
       const Record once = simulate(draw_world(system, seed)), again = simulate(draw_world(system, seed));
       EXPECT_EQ(once.outputs, again.outputs) << system.name << " " << seed;
       for (const auto& y : once.outputs)
