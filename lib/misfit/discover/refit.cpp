@@ -168,7 +168,6 @@ Model with_the_same_values(Model moved, const Model& from) {
   return moved;
 }
 
-/// The estimate with the effect in it, off: a start below which no search ends.
 Model off_model(const RefitWork& work, const ScreeningResult& screening) {
   Model model = start_model(work.without, screening, work.registry);
   for (int strength : screening.candidate_model->strengths) {
@@ -178,10 +177,6 @@ Model off_model(const RefitWork& work, const ScreeningResult& screening) {
   return model;
 }
 
-namespace {
-
-/// With the study's own values of what is in the estimate: the estimate's may be what makes up for the missing effect, together with a
-/// random force that hides it, and no way up may lead from there to the maximum with the effect.
 Model fresh_model(const RefitWork& work, const ScreeningResult& screening) {
   Model model = start_model(work.without, screening, work.registry);
   const Model as_filed = assemble(screening.candidate_model->request, work.registry);
@@ -192,7 +187,22 @@ Model fresh_model(const RefitWork& work, const ScreeningResult& screening) {
   return model;
 }
 
-}  // namespace
+std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model) {
+  const FilterEstimate& without = work.without;
+  FilterModel forced = with_random_force(model);
+  forced.set_force_time(without.noise.force_time);
+  FilterRunner runner(forced, false);
+  runner.set_parameters(forced.model.values());
+  std::vector<FilterData> data;
+  std::vector<FilterTrace> traces(without.data.size());
+  for (std::size_t e = 0; e < without.data.size(); ++e) {
+    data.push_back(filter_data_like(forced, without.data[e]));
+    if (!runner.run(data[e], without.noise, traces[e])) return std::nullopt;
+  }
+  constexpr int steps_of_noise = 3;
+  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.reference, work.threads, steps_of_noise});
+  return NoisyRun{-noise.minus_log_density + log_prior(model, penalties_as_of(without, model)), noise.noise};
+}
 
 OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening) {
   const FilterEstimate& without = work.without;
@@ -203,21 +213,10 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
     Parameter& p = model.parameters[free[c]];
     p.value = std::clamp(p.value + step[c], p.lower, p.upper);
   }
-  FilterModel forced = with_random_force(model);
-  forced.set_force_time(without.noise.force_time);
-  FilterRunner runner(forced, false);
-  runner.set_parameters(forced.model.values());
-  std::vector<FilterData> data;
-  std::vector<FilterTrace> traces(without.data.size());
-  for (std::size_t e = 0; e < without.data.size(); ++e) {
-    data.push_back(filter_data_like(forced, without.data[e]));
-    if (!runner.run(data[e], without.noise, traces[e])) return {screening.result.chi2, std::nullopt, {}};
-  }
-  constexpr int steps_of_noise = 3;
-  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.reference, work.threads, steps_of_noise});
-  const double objective = -noise.minus_log_density + log_prior(model, penalties_as_of(without, model));
-  const double drop = 2.0 * (objective - without.objective - prior_of_off(*screening.candidate_model));
-  OneStep out{std::max(drop, screening.result.chi2), std::nullopt, noise.noise};  // a step too long for the linearisation says nothing
+  const std::optional<NoisyRun> there = run_once(work, model);
+  if (!there) return {screening.result.chi2, std::nullopt, {}};
+  const double drop = 2.0 * (there->objective - without.objective - prior_of_off(*screening.candidate_model));
+  OneStep out{std::max(drop, screening.result.chi2), std::nullopt, there->noise};  // a step too long for the linearisation says nothing
   if (drop > 0.0) out.model = std::move(model);
   return out;
 }
@@ -261,7 +260,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
-  const bool whole_tried = in_time && fix_whole_strengths(work, out);
+  const bool whole_tried = in_time && fix_whole_strengths(work, screening, out);
   if (whole_tried) try_exchanged_poles(work, out);
   note_half_a_sample(out);
   if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));

@@ -53,8 +53,19 @@ struct RefitWork {
 /// The effect as refitted, for a start: its values as a cell and amplitudes.
 [[nodiscard]] ScreeningResult as_refitted(const ScreeningResult& screening, const Model& refitted);
 
-/// The same with its strengths at 0.
+/// The same with its strengths at 0: a start below which no search ends.
 [[nodiscard]] Model off_model(const RefitWork& work, const ScreeningResult& screening);
+/// The same with the study's own values of what is in the estimate: the estimate's may be what makes up for the missing effect, together
+/// with a random force that hides it, and no way up may lead from there to the maximum with the effect.
+[[nodiscard]] Model fresh_model(const RefitWork& work, const ScreeningResult& screening);
+
+/// A model run once with the estimate's noise, and that noise fitted about the run in a few steps.
+struct NoisyRun {
+  double objective = 0.0;
+  FilterNoise noise;
+};
+/// nullopt: the model cannot be run there.
+[[nodiscard]] std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model);
 
 /// One Gauss–Newton step of all parameters from the estimate with the effect at its screened strength: the model is run there once and the
 /// noise fitted about that run, since what is explained leaves the random force.
@@ -69,8 +80,9 @@ struct OneStep {
 /// and without it: from the estimate with the effect added to it, which an effect that the other parameters must make room for can throw
 /// out of the finite numbers; where that, too, reaches none, or one below the estimate: from the estimate with the effect in it but off,
 /// below which the search does not end. A strength at which the effect would be whole (whole_strength.h) is then fixed there if that costs
-/// the log-likelihood at most 2. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried.
-/// Last, a shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
+/// the log-likelihood at most 2; from the part that was found, else from the best of the shapes that the screening looked at. A lag and a
+/// pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a shape that may drift
+/// (CoefficientSpec::drift_of) does if the data ask for it.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.

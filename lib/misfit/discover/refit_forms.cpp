@@ -69,10 +69,10 @@ struct WholeStart {
   std::optional<std::map<std::string, std::string>> moved;
 };
 
-/// On the input itself where that is possible: on_its_input().
-WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vector<WholeStrength>& whole) {
-  WholeStart out{start_of_whole(refit.estimate.model, whole), refit.request, {}};
-  const std::optional<ModelRequest> request = on_its_input(refit.estimate.model, refit.request);
+/// On the input itself where that is possible: on_its_input(). `model`: with the whole effect at its port.
+WholeStart whole_start(const RefitWork& work, const Model& model, const ModelRequest& as_requested) {
+  WholeStart out{model, as_requested, {}};
+  const std::optional<ModelRequest> request = on_its_input(model, as_requested);
   if (!request) return out;
   try {
     Model there = with_the_same_values(assemble(*request, work.registry), out.model);
@@ -85,6 +85,52 @@ WholeStart whole_start(const RefitWork& work, const Refit& refit, const std::vec
   } catch (const DoesNotSuit&) {  // it cannot act there: it stays at its port, its strength fixed at the whole
   }
   return out;
+}
+
+enum class Held { taken, refused, out_of_time };
+
+/// The whole effect at its maximum from a start, in place of what was found, if its log-likelihood is not lower by `allowed`.
+Held take_if_allowed(const RefitWork& work, const WholeStart& start, const FilterNoise& noise, double allowed, Refit& out) {
+  FilterOptions options = options_like(work.without, work.threads);
+  options.noise = noise;
+  try {
+    FilterEstimate held = estimate_filter(start.model, penalties_as_of(work.without, start.model), work.experiments, options);
+    if (held.out_of_time) return Held::out_of_time;
+    if (!held.converged || !(held.objective > out.estimate.objective - allowed)) return Held::refused;
+    out.estimate = std::move(held);
+    out.request = start.request;
+    out.moved = start.moved;
+    return Held::taken;
+  } catch (const TimeLimitReached&) {
+    return Held::out_of_time;
+  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
+    return Held::refused;
+  }
+}
+
+/// Of the shapes that the screening looked at, those with which the whole effect explains most at once, beside the estimate's values or the
+/// study's own (an estimate without the effect may be far off); and the noise there. nullopt: there is no choice, or none can be run.
+std::optional<std::pair<Model, FilterNoise>> best_screened_whole(const RefitWork& work, const ScreeningResult& screening,
+                                                                 const std::vector<WholeStrength>& whole) {
+  const CandidateModel& candidate_model = *screening.candidate_model;
+  if (candidate_model.cells.size() < 2) return std::nullopt;
+  std::optional<std::pair<Model, FilterNoise>> best;
+  double highest = 0.0;
+  for (Model model : {off_model(work, screening), fresh_model(work, screening)}) {
+    for (const WholeStrength& w : whole) {
+      model.parameters[w.parameter].value = w.value;
+      model.parameters[w.parameter].free = false;
+    }
+    for (const auto& cell : candidate_model.cells) {
+      for (std::size_t i = 0; i < cell.size() && i < candidate_model.shapes.size(); ++i)
+        model.parameters[candidate_model.shapes[i]].value = cell[i];
+      const std::optional<NoisyRun> there = run_once(work, model);
+      if (!there || (best && !(there->objective > highest))) continue;
+      highest = there->objective;
+      best = {model, there->noise};
+    }
+  }
+  return best;
 }
 
 /// The estimate from where the effect has a time constant of the system, and the system, by the parameter that moves it, the effect's. The
@@ -114,27 +160,21 @@ bool alike(double a, double b) {
 
 }  // namespace
 
-bool fix_whole_strengths(const RefitWork& work, Refit& out) {
-  constexpr double allowed = 2.0;  // of the log-likelihood
+bool fix_whole_strengths(const RefitWork& work, const ScreeningResult& screening, Refit& out) {
   const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
   if (whole.empty()) return true;
-  const WholeStart start = whole_start(work, out, whole);
-  FilterOptions options = options_like(work.without, work.threads);
-  options.noise = out.estimate.noise;
-  try {
-    FilterEstimate held = estimate_filter(start.model, penalties_as_of(work.without, start.model), work.experiments, options);
-    if (held.out_of_time) return false;
-    if (held.converged && held.objective > out.estimate.objective - allowed) {
-      out.estimate = std::move(held);
-      out.request = start.request;
-      out.moved = start.moved;
-      return true;
-    }
-  } catch (const TimeLimitReached&) {
-    return false;
-  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
-  }
-  out.partial = part_of_effect(out.estimate, whole);
+  const ModelRequest as_requested = out.request;
+  constexpr double of_a_part = 2.0;
+  const auto hold = [&](const Model& model, const FilterNoise& noise, double allowed) {
+    return take_if_allowed(work, whole_start(work, model, as_requested), noise, allowed, out);
+  };
+  const Held from_part = hold(start_of_whole(out.estimate.model, whole), out.estimate.noise, of_a_part);
+  if (from_part == Held::out_of_time) return false;
+  const bool taken = from_part == Held::taken;
+  const auto screened = best_screened_whole(work, screening, whole);
+  const Held from_screened = screened ? hold(screened->first, screened->second, taken ? 0.0 : of_a_part) : Held::refused;
+  if (from_screened == Held::out_of_time) return taken;
+  if (!taken && from_screened == Held::refused) out.partial = part_of_effect(out.estimate, whole);
   return true;
 }
 

@@ -6,9 +6,11 @@ namespace misfit {
 
 // What a refit that has found its maximum tries beside it: the whole effect, the other order of two poles, shapes that drift.
 
-/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it.
-/// False: there was no time to try, so that a part that was found says nothing.
-[[nodiscard]] bool fix_whole_strengths(const RefitWork& work, Refit& out);
+/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it:
+/// from where the refit has found a part of it, and from the best of its screened shapes, beside the values of the estimate without it or
+/// the study's own: what was found may be a maximum of its own, from which no way leads to the whole. False: there was no time to try, so
+/// that a part that was found says nothing.
+[[nodiscard]] bool fix_whole_strengths(const RefitWork& work, const ScreeningResult& screening, Refit& out);
 
 /// Where the effect's time constant and one of the system's may have changed places: the better order. Where these data hardly tell the two
 /// apart, the one in which the effect is the faster, as actuators and sensors are, and the other in words. Without time the order that was
