@@ -106,6 +106,27 @@ TEST(Verdict, NothingMissingNamesTheRandomForceThatDrivesTheMotion) {
   EXPECT_EQ(c.verdict().sentence, "No effect is found missing, but none of the library was tested.");
 }
 
+TEST(Verdict, WhereNothingIsMissingTheFittedModelIsTheAnswer) {
+  Case c;
+  c.fits.front().parameters = {{"gain", {2.0, 0.1, "rad/s"}}, {"tau", {0.5, 0.0, "s"}}, {"C[0]", {1.0, 0.1, "-"}}};
+  c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
+  EXPECT_EQ(c.verdict().parameters, "gain = 114.6 ± 5.7 deg/s and tau = 0.5 s");
+  constexpr std::size_t wide = 200;
+  EXPECT_THAT(as_text(blocks_of(c.verdict()), {wide}), HasSubstr("parameters of the fitted model: gain = 114.6 ± 5.7 deg/s and tau = 0.5 s"));
+  c.discovery = searched({}, SearchOutcome::unknown_form, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "dw/dt", c.discovery->unexplained_quantity = "w";
+  EXPECT_THAT(c.verdict().parameters, HasSubstr("gain = "));
+  c.discovery = searched({candidate("drag", 1e-9, true)}, SearchOutcome::accepted, "Missing: drag");
+  EXPECT_THAT(c.verdict().parameters, IsEmpty()) << "drag changes them";
+}
+
+TEST(Verdict, OfManyParametersTheFirstAreNamedAndTheRestCounted) {
+  Case c;
+  for (int i = 10; i < 24; ++i) c.fits.front().parameters["p" + std::to_string(i)] = {1.0, 0.1, "V"};
+  c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
+  EXPECT_THAT(c.verdict().parameters, AllOf(testing::StartsWith("p10 = 1.00 ± 0.10 V, "), EndsWith("p21 = 1.00 ± 0.10 V and 2 more")));
+}
+
 TEST(Verdict, WithoutASearchTheResidualsSpeakAndDiscoverIsNext) {
   Case c;
   c.fail_at_rest();

@@ -10,6 +10,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/shell_word.h"
 #include "misfit/core/text.h"
+#include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
 #include "misfit/math/statistics.h"
 #include "misfit/show/error_changes.h"
@@ -37,16 +38,28 @@ std::string values_of(const Estimates& parameters) {
   return join_words(out);
 }
 
-/// What the last model estimates beside what was added, numbers alone; empty where it is more than a line says.
+/// The same without coefficients of curves; of very many the first, and how many more there are. Empty: there is none.
+std::string numbers_of(const Estimates& parameters) {
+  constexpr std::size_t most = 12;
+  std::vector<std::string> out;
+  for (const auto& [name, e] : parameters) {
+    if (!is_curve_coefficient(name)) out.push_back(name + " = " + shown(e));
+  }
+  const std::size_t more = out.size() > most ? out.size() - most : 0;
+  out.resize(out.size() - more);
+  if (more > 0) out.push_back(std::to_string(more) + " more");
+  return join_words(out);
+}
+
+/// What the last model estimates beside what was added.
 Estimates others_of_last(const Ladder& ladder) {
-  constexpr std::size_t most = 6;
   const Rung& last = ladder.rungs.back();
   Estimates out = last.estimates.value_or(Estimates{});
   for (const Rung& rung : ladder.rungs) {
     if (rung.added.empty()) continue;
     for (const auto& [name, estimate] : rung.parameters) out.erase(name);
   }
-  return out.size() > most ? Estimates{} : out;
+  return out;
 }
 
 /// "quadratic_drag: drag = 0.5010 ± 0.0004 1/m": of what was added, as the last model has it; where that differs, also as its own rung has
@@ -66,8 +79,8 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
     out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }
-  if (const Estimates rest = others_of_last(ladder); !rest.empty() && !out.empty())
-    out.push_back("other parameters of the last model: " + values_of(rest));
+  if (const std::string rest = numbers_of(others_of_last(ladder)); !rest.empty())
+    out.push_back((out.empty() ? "parameters of the last model: " : "other parameters of the last model: ") + rest);
   return out;
 }
 
@@ -122,6 +135,7 @@ class VerdictBuilder {
     }
     if (fit_ != nullptr && in_.discovery != nullptr && in_.discovery->fixed_parameters && out_.kind != VerdictKind::calibration)
       out_.sentence += " " + in_.discovery->fixed_parameters->front() + ".";  // begins with the parameter's name
+    add_parameters();
     return out_;
   }
 
@@ -185,6 +199,15 @@ class VerdictBuilder {
       places.push_back(place_where_it_fails(map, places.empty()));
     }
     return fmt::format("{}", fmt::join(places, " "));
+  }
+
+  /// The model that was identified is the answer where no named effect is to come: a name changes the others' values. After a success they
+  /// stand in `added`.
+  void add_parameters() {
+    const bool others_come =
+        out_.kind == VerdictKind::missing || out_.kind == VerdictKind::several_possible || out_.kind == VerdictKind::calibration;
+    if (fit_ == nullptr || effects_added_ || others_come) return;
+    out_.parameters = numbers_of(fit_->parameters);
   }
 
   /// What to do with a model that lacks nothing more: other programs take it, on other recordings.
@@ -418,6 +441,7 @@ Blocks blocks_of(const Verdict& v) {
   out.paragraph(v.sentence, Tone::lead);
   out.paragraph(v.where);
   std::vector<std::string> errors = v.added;
+  if (!v.parameters.empty()) errors.push_back("parameters of the fitted model: " + v.parameters);
   for (const ErrorChange& e : v.errors) errors.push_back(e.what() + ": " + shown(e));
   if (v.trim) errors.push_back(v.trim->what() + ": " + shown(*v.trim));
   out.list({errors});
