@@ -112,7 +112,8 @@ TEST(Verdict, WhereNothingIsMissingTheFittedModelIsTheAnswer) {
   c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
   EXPECT_EQ(c.verdict().parameters, "gain = 114.6 ± 5.7 deg/s and tau = 0.5 s");
   constexpr std::size_t wide = 200;
-  EXPECT_THAT(as_text(blocks_of(c.verdict()), {wide}), HasSubstr("parameters of the fitted model: gain = 114.6 ± 5.7 deg/s and tau = 0.5 s"));
+  EXPECT_THAT(as_text(blocks_of(c.verdict()), {wide}),
+              HasSubstr("parameters of the fitted model: gain = 114.6 ± 5.7 deg/s and tau = 0.5 s"));
   c.discovery = searched({}, SearchOutcome::unknown_form, "Something is missing that depends on w");
   c.discovery->unexplained_port = "dw/dt", c.discovery->unexplained_quantity = "w";
   EXPECT_THAT(c.verdict().parameters, HasSubstr("gain = "));
