@@ -504,6 +504,24 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
               AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("still missing that depends on w")));
 }
 
+TEST(Verdict, OfACurveThatWasRefusedItSaysWhatDecidedAndWhatIsNext) {
+  Case c;
+  c.add_effect();
+  c.discovery = searched({candidate("lag", 0.5, false)}, SearchOutcome::unknown_form, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "dw/dt", c.discovery->unexplained_quantity = "w";
+  c.discovery->unexplained_effects = {{"unknown_force", {{"of", "w"}, {"port", "dw/dt"}}}};
+  const std::string name = "unknown_force (of = w, port = dw/dt)";
+  Rung& last = c.ladder->rungs.back();
+  last.gained_too_little = {name};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("in its place, " + name + ", was added and taken off again; look where it fails")) << "old";
+  last.why_too_little = {{name, "what it gains may be chance (drop 9.1 with 10 parameters, p = 0.52 among 4 that were tried)"}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("was added and taken off again: what it gains may be chance (drop 9.1 with 10 parameters"));
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
+  last.added = "unknown_force", last.roles = {{"of", "w"}, {"port", "dw/dt"}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("its curve of unknown form, " + name + ", is in the last model already and leaves this; "));
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
+}
+
 TEST(Verdict, AnErrorOfUnknownFormIsNotCalledAForce) {
   Case c;
   c.discovery = searched({candidate("lag", 0.5, false)}, SearchOutcome::unknown_form, "Something is missing that depends on w");

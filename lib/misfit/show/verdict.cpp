@@ -319,6 +319,25 @@ class VerdictBuilder {
     return nullptr;
   }
 
+  /// "; X was added as a curve of unknown form and taken off again: …" of each that is not untried(): what was tried, and the number that
+  /// decided.
+  [[nodiscard]] std::string curves_in_vain(const std::vector<EffectPlace>& curves) const {
+    const Rung* last = in_.ladder != nullptr && !in_.ladder->rungs.empty() ? &in_.ladder->rungs.back() : nullptr;
+    std::string out;
+    for (const EffectPlace& curve : curves) {
+      const std::string name = effect_at(curve.effect, curve.roles);
+      const std::string* why =
+          last != nullptr && last->why_too_little && last->why_too_little->contains(name) ? &last->why_too_little->at(name) : nullptr;
+      if (on_ladder(curve)) {
+        out += fmt::format("; its curve of unknown form, {}, is in the last model already and leaves this", name);
+      } else {
+        out += fmt::format("; a curve of unknown form in its place, {}, was added and taken off again", name);
+        if (why != nullptr) out += ": " + *why;
+      }
+    }
+    return out;
+  }
+
   /// " X can be added …"; empty where what is held out has spoken against it.
   [[nodiscard]] static std::string by_hand(const Candidate& rejected) {
     if (rejected.why.find("the held-out log-likelihood") != std::string::npos) return "";
@@ -335,12 +354,11 @@ class VerdictBuilder {
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const EffectPlace* curve = untried(d.unexplained_effects);
-      const bool in_vain = curve == nullptr && !d.unexplained_effects.empty();
-      if (in_vain) unknown += "; as a curve of one of them it gains too little, or cannot be fitted";
-      if (curve == nullptr && !in_vain)
-        unknown +=
-            "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help system)";
-      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles) : in_vain ? "" : command("open");
+      if (curve == nullptr)
+        unknown += curves_in_vain(d.unexplained_effects) +
+                   "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help "
+                   "system)";
+      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles) : command("open");
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
