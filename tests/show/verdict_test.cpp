@@ -531,6 +531,21 @@ TEST(Verdict, AnErrorOfUnknownFormIsNotCalledAForce) {
   EXPECT_THAT(c.verdict().sentence, AllOf(HasSubstr("depends on w: an error of V that no effect"), Not(HasSubstr("force"))));
 }
 
+TEST(Verdict, WhatIsOutdatedIsNamedWithTheReasonAndTheCommandThatMakesItAnew) {
+  Case c;
+  VerdictInput input{"configs/motor", "", &c.fits};
+  input.left_out = "earlier results in out (diagnosis.json) are left out: they are of another build of misfit (0.1, a; this one is 0.2, b)";
+  input.anew = "misfit run configs/motor";
+  EXPECT_THAT(verdict_of(input).sentence,
+              AllOf(testing::StartsWith("Earlier results in out (diagnosis.json) are left out: they are of another build of misfit"),
+                    EndsWith("; where the model fails and what it lacks are to be looked for again."), Not(HasSubstr("not been looked"))));
+  EXPECT_EQ(verdict_of(input).next, "misfit run configs/motor");
+  c.add_effect();
+  input.ladder = &*c.ladder;
+  EXPECT_THAT(verdict_of(input).sentence, AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("; earlier results in out"),
+                                                EndsWith("; whether more is missing is to be looked for again.")));
+}
+
 TEST(Verdict, WithoutAUsableFitItSaysWhy) {
   Case c;
   c.fits.front().status = FitStatus::declined;

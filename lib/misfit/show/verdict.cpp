@@ -125,7 +125,11 @@ class VerdictBuilder {
     if (fit_ == nullptr) {
       no_result();
     } else if (in_.discovery == nullptr) {
-      effects_added_ ? added("whether more is missing has not been looked for", command("discover")) : not_searched();
+      if (!in_.left_out.empty()) {
+        outdated();
+      } else {
+        effects_added_ ? added("whether more is missing has not been looked for", command("discover")) : not_searched();
+      }
     } else if (!in_.discovery->sweep_asks.empty()) {
       calibration();
     } else if (const Candidate* best = accepted(*in_.discovery)) {
@@ -222,6 +226,13 @@ class VerdictBuilder {
     }
     say(VerdictKind::no_result,
         why.empty() ? "no method was asked for" : "no method gives a result: " + fmt::format("{}", fmt::join(why, "; ")), "");
+  }
+
+  /// What diagnose and discover found before does not count any more.
+  void outdated() {
+    const std::string why = in_.left_out + "; ";
+    effects_added_ ? added(why + "whether more is missing is to be looked for again", in_.anew)
+                   : say(VerdictKind::not_searched, why + "where the model fails and what it lacks are to be looked for again", in_.anew);
   }
 
   /// What fits and diagnosis alone say.
