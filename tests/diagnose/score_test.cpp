@@ -74,6 +74,26 @@ TEST(ScoreTest, AColumnTheModelHasIsKnownAsSuch) {
   EXPECT_LT(ScoreTest(linear_estimate(r, column)).test(C).independent, 0.01);
 }
 
+/// Two columns that differ from the free parameter's in the same direction by little, and one that has nothing to do with it.
+TEST(ScoreTest, OfWhatTheParametersNearlyDescribeThereIsNoAmplitudeBelowTheLeastShare) {
+  std::mt19937_64 random(14);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] { return normal(random); };
+  constexpr int rows = 500;
+  constexpr double little = 0.05;
+  const Eigen::VectorXd column = Eigen::VectorXd::NullaryExpr(rows, draw), beside = Eigen::VectorXd::NullaryExpr(rows, draw);
+  Eigen::MatrixXd C(rows, 2);
+  C << column + little * beside, Eigen::VectorXd::NullaryExpr(rows, draw);
+  const Eigen::VectorXd r = Eigen::VectorXd::NullaryExpr(rows, draw) - beside - C.col(1);
+  const ScoreTest score(linear_estimate(r, column));
+  const ScoreResult all = score.test(C), seen = score.test(C, nullptr, 0.01);
+  EXPECT_NEAR(all.amplitude[0], 1.0 / little, 4.0) << "many times what acts";
+  EXPECT_EQ(seen.chi2, all.chi2) << "it is significant all the same";
+  EXPECT_EQ(seen.dof, 2);
+  EXPECT_LT(std::abs(seen.amplitude[0]), 0.1 * all.amplitude[0]);
+  EXPECT_NEAR(seen.amplitude[1], 1.0, 4.0 / std::sqrt(rows));
+}
+
 TEST(ScoreTest, PriorsPullTheAmplitude) {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(4), r = Eigen::VectorXd::Constant(4, -1.0);
   const Eigen::MatrixXd C = Eigen::MatrixXd::Ones(4, 1);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/methods.h"
@@ -77,6 +78,40 @@ TEST(KnownNoise, AnEstimateAtItsBoundIsSaid) {
   EXPECT_TRUE(said(fitted(true, 600, KnownNoise{far_above * noise, false})));
   EXPECT_FALSE(said(fitted(true, 600, {})));
   EXPECT_FALSE(said(fitted(true, 600, KnownNoise{noise, true}))) << "held, not estimated";
+}
+
+bool says(const Fit& fit, const std::string& words) {
+  return std::any_of(fit.warnings.begin(), fit.warnings.end(), [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
+Fit filtered(const Signals& record) {
+  const auto registry = registry_with(decay_text);
+  const Model model = assemble(request_of("text"), *registry);
+  FilterOptions one;
+  one.threads = 1;
+  return filter_error(trajectory_start(model, {record}).from, {record}, one).fit;
+}
+
+TEST(ColouredNoise, WhereItIsNotThereItsBoundsSayNothing) {
+  int at_bounds = 0;
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+    const Fit fit = filtered(decay(600, seed));
+    EXPECT_FALSE(says(fit, "of the coloured noise of y is at its ")) << seed;
+    const auto fact = fit.facts.find("coloured noise of y");
+    if (fact != fit.facts.end() && fact->second.find("hardly more likely than white noise alone (drop ") == 0) ++at_bounds;
+  }
+  EXPECT_GT(at_bounds, 0) << "white noise is most like coloured noise of some shape";
+}
+
+/// A hum in the measurement: a line is the coloured noise of no damping.
+TEST(ColouredNoise, WhereItIsThereItsBoundIsSaid) {
+  Signals record = decay(600, 7);
+  const double step = record.t[1] - record.t[0];
+  for (std::size_t i = 0; i < record.samples(); ++i) record.measured[0].values[i] += noise * std::cos(0.9 * static_cast<double>(i));
+  const Fit fit = filtered(record);
+  EXPECT_TRUE(says(fit, "the damping of the coloured noise of y is at its lower bound 0.01: "));
+  constexpr double turn = 2.0 * std::numbers::pi;
+  EXPECT_NEAR(fit.noise.at("y_coloured_frequency").value, 0.9 / turn / step, 0.01 / step);
 }
 
 TEST(KnownForceTime, IsHeld) {

@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "misfit/core/display.h"
 #include "misfit/core/units.h"
+#include "misfit/model/declared_parameter.h"
 #include "misfit/model/evaluator.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/model/declared_texts.h"
@@ -270,6 +272,24 @@ TEST(DeclaredDisplay, InUnitsOfTheRecordingShowsWhatIsMeasuredInThemAndWhatEffec
 struct WrongUnits {
   std::string units, said;
 };
+
+TEST(DeclaredSystem, UnitsMadeOfSeveralAreShownWithThoseOfTheSystem) {
+  SystemSpec spec;
+  for (const char* unit : {"degC", "kW", "km/h", "mm"}) spec.shown_units.push_back(shown_in(unit));
+  const auto shown_as = [&](const std::string& unit) { return display_unit(declared::shown_unit(unit, spec)); };
+  EXPECT_EQ(declared::shown_unit("K/W", spec), "K/W (shown in K/kW)");
+  EXPECT_EQ(shown_as("K s/m"), "K h/km") << "per km/h, not per mm";
+  EXPECT_EQ(shown_as("W/K"), "kW/K");
+  EXPECT_EQ(shown_as("K/s/W"), "K/s/kW");
+  EXPECT_EQ(shown_as("m/s^2"), "mm/s^2");
+  EXPECT_EQ(shown_as("1/m"), "1/mm");
+  EXPECT_EQ(shown_as("m^2"), "m^2") << "neither one mm nor per mm";
+  EXPECT_EQ(shown_as("1/K"), "1/K") << "of a difference";
+  EXPECT_EQ(shown_as("rad/s/W"), "rad/s/W") << "angles are shown in two ways only";
+  EXPECT_EQ(shown_as("V"), "V");
+  EXPECT_NEAR(display_value(-6.37, declared::shown_unit("K s/m", spec)), -6.37 / 3.6, 1e-12);
+  EXPECT_NEAR(display_value(0.0653, declared::shown_unit("K/W", spec)), 65.3, 1e-9);
+}
 
 TEST(DeclaredDisplay, RefusesUnitsThatAreNoneAndSecondOnesInWords) {
   for (const auto& [units, said] : std::vector<WrongUnits>{{R"(["rmp"])", "unknown unit 'rmp' — did you mean 'rpm'"},

@@ -187,6 +187,21 @@ TEST(Figure, TimesFarFromZeroAreDrawnToTheDigitsOfTheirSpan) {
   for (const char* tic : {">1700000000.05<", ">1700000000.1<", ">101325.015<"}) EXPECT_NE(svg.find(tic), std::string::npos) << tic;
 }
 
+TEST(Figure, LongTimesAreShownInHoursOrDaysAndStaySecondsInTheNumbers) {
+  constexpr double hour = 3600.0;
+  const auto script_over = [](double span) {
+    Figure figure = figure_of(line({1.0, 2.0, 3.0}));
+    figure.x_label = "time", figure.x_unit = std::string("s");
+    figure.panels.front().series.front().x = {0.0, 0.5 * span, span};
+    return gnuplot_script(figure);
+  };
+  EXPECT_NE(script_over(2.0 * hour).find("[s]"), std::string::npos);
+  EXPECT_NE(script_over(12.0 * hour).find("[h]"), std::string::npos);
+  EXPECT_NE(script_over(12.0 * hour).find("'4' 14400"), std::string::npos);
+  EXPECT_NE(script_over(240.0 * hour).find("[d]"), std::string::npos);
+  EXPECT_NE(script_over(240.0 * hour).find("'4' 345600"), std::string::npos);
+}
+
 TEST(Figure, AMissingValueBreaksTheLine) {
   const TemporaryFolder folder;
   const std::string whole = read_file(write_figure(folder.path(), figure_of(line({1.0, 2.0, 1.5, 2.5, 1.0}))));

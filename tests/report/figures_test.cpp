@@ -142,6 +142,23 @@ TEST(Figures, APredictionFromAnUnknownStateDoesNotSetTheAxisOfTheResiduals) {
   EXPECT_NEAR(find(figure, "residual")->y[1], 100.0, 1e-6) << "it stays in the numbers";
 }
 
+TEST(Figures, ASpikeDoesNotSetTheAxisOfTheResidualsAndIsCounted) {
+  ChannelPrediction c = channel(1000);
+  for (std::size_t k = 0; k < c.t.size(); ++k) {
+    c.measured[k] = c.predicted[k] + (k % 2 == 0 ? 0.5 : -0.5) * degree;
+    c.sigma[k] = 0.4 * degree;
+  }
+  EXPECT_TRUE(motion_figure("filter_error", c, std::nullopt).notes.empty());
+  c.measured[10] = c.predicted[10] + 2.0 * degree;
+  c.measured[500] = c.predicted[500] - 30.0 * degree;
+  const Figure figure = motion_figure("filter_error", c, std::nullopt);
+  ASSERT_TRUE(figure.panels[1].y_range);
+  EXPECT_NEAR((*figure.panels[1].y_range)[1], 2.0 * 0.5 * 1.05, 1e-9);
+  ASSERT_EQ(figure.notes.size(), 1U);
+  EXPECT_TRUE(figure.notes[0].starts_with("2 of 1000 residuals lie beyond the axis, the largest, -30 deg, at ")) << figure.notes[0];
+  EXPECT_TRUE(figure.notes[0].ends_with(" s"));
+}
+
 TEST(Figures, ResidualIsMeasuredMinusPredictedInDegrees) {
   ChannelPrediction c = channel(3);
   c.measured = {0.2 + degree, nan, 0.2};

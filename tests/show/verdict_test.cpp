@@ -106,6 +106,28 @@ TEST(Verdict, NothingMissingNamesTheRandomForceThatDrivesTheMotion) {
   EXPECT_EQ(c.verdict().sentence, "No effect is found missing, but none of the library was tested.");
 }
 
+TEST(Verdict, WhereNothingIsMissingTheFittedModelIsTheAnswer) {
+  Case c;
+  c.fits.front().parameters = {{"gain", {2.0, 0.1, "rad/s"}}, {"tau", {0.5, 0.0, "s"}}, {"C[0]", {1.0, 0.1, "-"}}};
+  c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
+  EXPECT_EQ(c.verdict().parameters, "gain = 114.6 ± 5.7 deg/s and tau = 0.5 s");
+  constexpr std::size_t wide = 200;
+  EXPECT_THAT(as_text(blocks_of(c.verdict()), {wide}),
+              HasSubstr("parameters of the fitted model: gain = 114.6 ± 5.7 deg/s and tau = 0.5 s"));
+  c.discovery = searched({}, SearchOutcome::unknown_form, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "dw/dt", c.discovery->unexplained_quantity = "w";
+  EXPECT_THAT(c.verdict().parameters, HasSubstr("gain = "));
+  c.discovery = searched({candidate("drag", 1e-9, true)}, SearchOutcome::accepted, "Missing: drag");
+  EXPECT_THAT(c.verdict().parameters, IsEmpty()) << "drag changes them";
+}
+
+TEST(Verdict, OfManyParametersTheFirstAreNamedAndTheRestCounted) {
+  Case c;
+  for (int i = 10; i < 24; ++i) c.fits.front().parameters["p" + std::to_string(i)] = {1.0, 0.1, "V"};
+  c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
+  EXPECT_THAT(c.verdict().parameters, AllOf(testing::StartsWith("p10 = 1.00 ± 0.10 V, "), EndsWith("p21 = 1.00 ± 0.10 V and 2 more")));
+}
+
 TEST(Verdict, WithoutASearchTheResidualsSpeakAndDiscoverIsNext) {
   Case c;
   c.fail_at_rest();
@@ -482,6 +504,24 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
               AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("still missing that depends on w")));
 }
 
+TEST(Verdict, OfACurveThatWasRefusedItSaysWhatDecidedAndWhatIsNext) {
+  Case c;
+  c.add_effect();
+  c.discovery = searched({candidate("lag", 0.5, false)}, SearchOutcome::unknown_form, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "dw/dt", c.discovery->unexplained_quantity = "w";
+  c.discovery->unexplained_effects = {{"unknown_force", {{"of", "w"}, {"port", "dw/dt"}}}};
+  const std::string name = "unknown_force (of = w, port = dw/dt)";
+  Rung& last = c.ladder->rungs.back();
+  last.gained_too_little = {name};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("in its place, " + name + ", was added and taken off again; look where it fails")) << "old";
+  last.why_too_little = {{name, "what it gains may be chance (drop 9.1 with 10 parameters, p = 0.52 among 4 that were tried)"}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("was added and taken off again: what it gains may be chance (drop 9.1 with 10 parameters"));
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
+  last.added = "unknown_force", last.roles = {{"of", "w"}, {"port", "dw/dt"}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("its curve of unknown form, " + name + ", is in the last model already and leaves this; "));
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
+}
+
 TEST(Verdict, AnErrorOfUnknownFormIsNotCalledAForce) {
   Case c;
   c.discovery = searched({candidate("lag", 0.5, false)}, SearchOutcome::unknown_form, "Something is missing that depends on w");
@@ -489,6 +529,21 @@ TEST(Verdict, AnErrorOfUnknownFormIsNotCalledAForce) {
   c.discovery->unexplained_quantity = "w";
   c.discovery->unexplained_error = true;
   EXPECT_THAT(c.verdict().sentence, AllOf(HasSubstr("depends on w: an error of V that no effect"), Not(HasSubstr("force"))));
+}
+
+TEST(Verdict, WhatIsOutdatedIsNamedWithTheReasonAndTheCommandThatMakesItAnew) {
+  Case c;
+  VerdictInput input{"configs/motor", "", &c.fits};
+  input.left_out = "earlier results in out (diagnosis.json) are left out: they are of another build of misfit (0.1, a; this one is 0.2, b)";
+  input.anew = "misfit run configs/motor";
+  EXPECT_THAT(verdict_of(input).sentence,
+              AllOf(testing::StartsWith("Earlier results in out (diagnosis.json) are left out: they are of another build of misfit"),
+                    EndsWith("; where the model fails and what it lacks are to be looked for again."), Not(HasSubstr("not been looked"))));
+  EXPECT_EQ(verdict_of(input).next, "misfit run configs/motor");
+  c.add_effect();
+  input.ladder = &*c.ladder;
+  EXPECT_THAT(verdict_of(input).sentence, AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("; earlier results in out"),
+                                                EndsWith("; whether more is missing is to be looked for again.")));
 }
 
 TEST(Verdict, WithoutAUsableFitItSaysWhy) {

@@ -71,6 +71,9 @@ TEST(DisplayUnits, AreThoseOfNumbersAndOfStoredResultsAndSurviveBeingReadBack) {
     ASSERT_TRUE(fit.usable()) << fit.message;
     EXPECT_THAT(shown(fit.parameters.at("idle")), HasSubstr(" kW"));
     EXPECT_NEAR(fit.parameters.at("idle").value, 50.0, 4.0 * fit.parameters.at("idle").sigma);
+    EXPECT_EQ(fit.parameters.at("gain").unit, "K/s/W (shown in K/s/kW)");
+    EXPECT_THAT(shown(fit.parameters.at("gain")), testing::EndsWith(" K/s/kW"));
+    EXPECT_NEAR(fit.parameters.at("gain").value, 4e-5, 4.0 * fit.parameters.at("gain").sigma) << "SI";
     EXPECT_THAT(shown(fit.noise.at("T")), HasSubstr(" K")) << "an error is a difference";
     EXPECT_EQ(fit.predictions.front().unit, "K (shown in degC)");
     EXPECT_EQ(fit.parameters.at("idle").unit, "W (shown in kW)");

@@ -19,6 +19,7 @@ namespace misfit {
 namespace {
 
 constexpr double significant = 0.01;  // corrected for all maps
+constexpr double described = 0.01;    // 1 − R², as of an absorbed candidate: amplitudes are not of what the model has already
 
 /// To a tenth of the first digit of `width`.
 std::string place(double value, double width, const std::string& unit) {
@@ -118,7 +119,7 @@ SolvedMap map_of(const Search& search, const Features& features, int port) {
   map.quantity_unit = features.unit;
   map.x = features.centre;
   map.count = features.count;
-  ScoreResult result = search.score.test(search.force.columns(port, features.f, features.ahead));
+  ScoreResult result = search.score.test(search.force.columns(port, features.f, features.ahead), nullptr, described);
   map.amplitude.assign(result.amplitude.data(), result.amplitude.data() + result.amplitude.size());
   map.sigma.assign(result.sigma.data(), result.sigma.data() + result.sigma.size());
   map.chi2 = result.chi2;
@@ -173,7 +174,7 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
     }
   }
   const int port = index_of(spec.dynamic_ports, first.port);
-  const ScoreResult result = score.test(force.columns(port, cells, ahead));
+  const ScoreResult result = score.test(force.columns(port, cells, ahead), nullptr, described);
   for (Eigen::Index c = 0; c < cells.cols(); ++c) {
     const bool known = enough[c] && result.sigma[c] > 0.0;
     map.amplitude.push_back(known ? result.amplitude[c] : std::nan(""));

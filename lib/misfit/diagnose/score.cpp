@@ -95,29 +95,54 @@ std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& V, const Ei
   return columns;
 }
 
-/// sᵀ V⁻¹ s with amplitudes V⁻¹ s over the given columns, in the eigenvectors of the correlation matrix whose eigenvalue is not rounding.
-/// Amplitudes leave out those combinations of columns of which the data see less than a hundredth of what they see of the columns: the free
-/// parameters make up for them (hats over a speed whose drag is free: any straight line), so that their size, a hundred times the rest,
-/// would say nothing of the force.
-void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::vector<Eigen::Index>& columns, ScoreResult& out) {
+/// Combinations of columns that do not correlate, and the information of each.
+struct Combinations {
+  Eigen::MatrixXd vectors;  ///< a column each
+  Eigen::VectorXd values;
+};
+
+/// Those of which the data see no less than a hundredth of what they see of the columns: the free parameters make up for the others (hats
+/// over a speed whose drag is free: any straight line), so that their size, a hundred times the rest, would say nothing of the force.
+Combinations seen(const Combinations& all) {
+  constexpr double min_seen = 1e-4;                                                                      // (1/100)²
+  const Eigen::Index first = (all.values.array() < min_seen).count(), kept = all.values.size() - first;  // in rising order
+  return {all.vectors.rightCols(kept), all.values.tail(kept)};
+}
+
+/// Those of which the free parameters do not describe all but `least_share`; `unadjusted`: information without them.
+Combinations undescribed(const Combinations& all, const Eigen::MatrixXd& unadjusted, double least_share) {
+  if (!(least_share > 0.0) || all.values.size() == 0) return all;
+  const Eigen::MatrixXd without = all.vectors.transpose() * unadjusted * all.vectors;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> shares(Eigen::MatrixXd(all.values.asDiagonal()), without);
+  if (shares.info() != Eigen::Success) return all;
+  const Eigen::Index first = (shares.eigenvalues().array() < least_share).count(), kept = all.values.size() - first;
+  return {all.vectors * shares.eigenvectors().rightCols(kept), shares.eigenvalues().tail(kept)};
+}
+
+/// sᵀ V⁻¹ s with amplitudes V⁻¹ s over the given columns, in the eigenvectors of the correlation matrix whose eigenvalue is not rounding;
+/// amplitudes in those that are seen() and undescribed(). `unadjusted`: CᵀC.
+void solve_score(const Eigen::MatrixXd& V, const Eigen::MatrixXd& unadjusted, const Eigen::VectorXd& s,
+                 const std::vector<Eigen::Index>& columns, double least_share, ScoreResult& out) {
   const Eigen::MatrixXd A = V(columns, columns);
   const Eigen::VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * A * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * (scale.asDiagonal() * Eigen::VectorXd(s(columns)));
-  Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(A.rows());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(A.rows(), A.rows());
+  const Eigen::VectorXd scaled = scale.asDiagonal() * Eigen::VectorXd(s(columns));
+  const Combinations all{eigen.eigenvectors(), eigen.eigenvalues()};
+  const Eigen::VectorXd rotated = all.vectors.transpose() * scaled;
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     constexpr double min_eigenvalue = 1e-6;  // below, columns are linearly dependent
-    const double value = eigen.eigenvalues()[i];
-    if (value < min_eigenvalue) continue;
+    if (all.values[i] < min_eigenvalue) continue;
     ++out.dof;
-    out.chi2 += rotated[i] * rotated[i] / value;
-    constexpr double min_seen = 1e-4;  // (1/100)²
-    if (value < min_seen) continue;
-    const auto vector = eigen.eigenvectors().col(i);
-    amplitude += vector * (rotated[i] / value);
-    covariance += vector * vector.transpose() / value;
+    out.chi2 += rotated[i] * rotated[i] / all.values[i];
+  }
+  const Combinations kept = undescribed(seen(all), scale.asDiagonal() * unadjusted(columns, columns) * scale.asDiagonal(), least_share);
+  Eigen::VectorXd amplitude = Eigen::VectorXd::Zero(A.rows());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(A.rows(), A.rows());
+  for (Eigen::Index i = 0; i < kept.values.size(); ++i) {
+    const auto vector = kept.vectors.col(i);
+    amplitude += vector * (vector.dot(scaled) / kept.values[i]);
+    covariance += vector * vector.transpose() / kept.values[i];
   }
   out.amplitude(columns) = scale.cwiseProduct(amplitude);
   out.sigma(columns) = scale.cwiseProduct(covariance.diagonal().cwiseSqrt());
@@ -126,13 +151,13 @@ void solve_score(const Eigen::MatrixXd& V, const Eigen::VectorXd& s, const std::
 
 }  // namespace
 
-ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors) const {
+ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors, double least_share) const {
   ScoreResult out;
   out.amplitude = out.sigma = Eigen::VectorXd::Zero(C.cols());
   out.covariance = Eigen::MatrixXd::Zero(C.cols(), C.cols());
   Eigen::MatrixXd V = C.transpose() * C;
   Eigen::VectorXd s = -C.transpose() * r_;
-  const Eigen::VectorXd unadjusted = V.diagonal();
+  const Eigen::MatrixXd unadjusted = V;
   if (has_parameters_) {
     const Eigen::MatrixXd cross = J_.transpose() * C;
     const Eigen::MatrixXd solved = information_.solve(cross);
@@ -143,8 +168,8 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
     V.diagonal() += priors->precision;
     s += priors->gradient(Eigen::VectorXd::Zero(s.size()));
   }
-  const std::vector<Eigen::Index> columns = independent_columns(V, unadjusted, out.independent);
-  if (!columns.empty()) solve_score(V, s, columns, out);
+  const std::vector<Eigen::Index> columns = independent_columns(V, unadjusted.diagonal(), out.independent);
+  if (!columns.empty()) solve_score(V, unadjusted, s, columns, least_share, out);
   return out;
 }
 

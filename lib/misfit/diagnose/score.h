@@ -25,8 +25,10 @@ class ScoreTest {
   explicit ScoreTest(const FilterEstimate& estimate);
 
   [[nodiscard]] Eigen::Index rows() const { return r_.size(); }
-  /// C: rows × columns, ∂(predicted − measured)/√S by each added coefficient at its off value.
-  [[nodiscard]] ScoreResult test(const Eigen::MatrixXd& C, const ColumnPriors* priors = nullptr) const;
+  /// C: rows × columns, ∂(predicted − measured)/√S by each added coefficient at its off value. Amplitudes (not χ²) leave out combinations
+  /// of columns whose 1 − R² on the free parameters' columns is below `least_share`: to be seen at all beside what the parameters make up
+  /// for, they would have to be many times what acts.
+  [[nodiscard]] ScoreResult test(const Eigen::MatrixXd& C, const ColumnPriors* priors = nullptr, double least_share = 0.0) const;
   /// Change of the free parameters in one joint Gauss–Newton step in which the added coefficients change from 0 to `amplitude`.
   [[nodiscard]] Eigen::VectorXd adjusted_step(const Eigen::MatrixXd& C, const Eigen::VectorXd& amplitude) const;
   /// C − J I22⁻¹ Jᵀ C: the part of the columns orthogonal to those of the free parameters (for correlations between candidates).

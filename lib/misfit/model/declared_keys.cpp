@@ -32,8 +32,8 @@ KeyGroup display_group() {
      {{.name = "angle", .type = Type::choice, .fallback = "\"deg\"", .choices = {"deg", "rad"},
        .meaning = "Angles and their rates: deg, deg/s, deg/s^2, or rad, rad/s, rad/s^2; knots without a unit are in it, too."},
       {.name = "units", .type = Type::texts, .otherwise = "SI",
-       .meaning = "Units in which states, inputs, outputs, quantities and parameters of their kind are shown, as [\"rpm\", \"degC\", \"kW\"]; "
-                  "errors and differences of temperatures in K. Knots without a unit are in them, too, those of temperatures in K. What is "
+       .meaning = "Units in which states, inputs, outputs, quantities and parameters of their kind are shown, as [\"rpm\", \"degC\", \"kW\"], "
+                  "and parameters made of them: what is in K/W, in K/kW; errors and differences of temperatures in K. Knots without a unit are in them, too, those of temperatures in K. What is "
                   "[1] is shown in % only if it is no parameter."}}};
 }
 

@@ -25,8 +25,8 @@ struct ParameterText {
 /// The unit of an entry, which must be there and SI.
 [[nodiscard]] std::string read_unit(const config::Section& section);
 
-/// The same as the system has it shown, where its [display] says so: radian for rad, "W (shown in kW)" for W. A parameter without unit is
-/// not shown in per cent.
+/// The same as the system has it shown, where its [display] says so: radian for rad, "W (shown in kW)" for W, "K/W (shown in K/kW)" for
+/// K/W. A parameter without unit is not shown in per cent.
 [[nodiscard]] std::string shown_unit(const std::string& unit, const SystemSpec& system);
 
 /// The same of a state, input, output or quantity, which may be shown in per cent.

@@ -10,6 +10,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
+#include "misfit/report/extent.h"
 #include "misfit/report/figure_units.h"
 #include "misfit/report/figures.h"
 
@@ -100,26 +101,55 @@ std::size_t unsettled(const ChannelPrediction& c) {
   return static_cast<std::size_t>(std::count_if(c.sigma.begin(), c.sigma.end(), [&](double v) { return v > largest; }));
 }
 
-/// Of residuals and bands but for those; nullopt: there is none.
-std::optional<std::array<double, 2>> range_of_settled(const std::vector<double>& residual, const std::vector<double>& sigma) {
+/// What 99 % of the values are below; 0 of none.
+double nearly_all_below(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  constexpr std::size_t hundred = 100;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>((hundred - 1) * (values.size() - 1) / hundred);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Of residuals and bands but for those, and but for single ones that are far beyond the others: on an axis that holds a spike nothing else
+/// is seen. nullopt: it is that of all.
+std::optional<std::array<double, 2>> range_of_residuals(const std::vector<double>& residual, const std::vector<double>& sigma) {
   const double largest = largest_usual_sigma(sigma);
-  double extent = 0.0;
+  std::vector<double> residuals, bands;
   bool all = true;
   for (std::size_t k = 0; k < sigma.size(); ++k) {
     if (sigma[k] > largest) all = false;
     if (!(sigma[k] <= largest)) continue;
-    extent = std::max({extent, sigma[k], std::isfinite(residual[k]) ? std::abs(residual[k]) : 0.0});
+    bands.push_back(sigma[k]);
+    if (std::isfinite(residual[k])) residuals.push_back(std::abs(residual[k]));
   }
-  constexpr double margin = 1.05;
-  if (all || !(extent > 0.0)) return std::nullopt;
+  constexpr double margin = 1.05, spike = 3.0, room = 2.0;  // of normal ones the largest of 10 000 is 1.5 times what 99 % are below
+  const double usual = std::max(nearly_all_below(residuals), nearly_all_below(bands));
+  const double most = std::max(extent_of(residuals)[1], extent_of(bands)[1]);
+  const bool spikes = most > spike * usual && usual > 0.0;
+  const double extent = spikes ? room * usual : most;
+  if ((all && !spikes) || !(extent > 0.0)) return std::nullopt;
   return std::array{-margin * extent, margin * extent};
+}
+
+/// "2 of 4465 residuals lie beyond the axis, the largest, 12.3 mm, at 61.2 s"; empty: none does.
+std::string beyond_axis(const ChannelPrediction& c, const Panel& panel) {
+  if (!panel.y_range) return "";
+  const std::vector<double> r = display_values(residuals(c), c.unit);
+  std::size_t beyond = 0, largest = 0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    if (!(std::abs(r[k]) > (*panel.y_range)[1])) continue;
+    if (beyond++ == 0 || std::abs(r[k]) > std::abs(r[largest])) largest = k;
+  }
+  if (beyond == 0) return "";
+  return fmt::format("{} of {} residuals {} beyond the axis, the largest, {}, at {:.6g} s", beyond, count_finite(r),
+                     beyond == 1 ? "lies" : "lie", with_display_unit(fmt::format("{:.3g}", r[largest]), c.unit), c.t[largest]);
 }
 
 Panel residual_panel(const ChannelPrediction& c) {
   const std::vector<double> sigma = display_values(c.sigma, c.unit);
   Panel panel{.y_label = "residual",
               .y_unit = display_unit(c.unit),
-              .y_range = range_of_settled(display_values(residuals(c), c.unit), sigma),
+              .y_range = range_of_residuals(display_values(residuals(c), c.unit), sigma),
               .height = 130.0,
               .zero_line = true};
   panel.series.push_back({"sigma", "± 1 sigma of the prediction", Style::band, palette(0), c.t, {}, scaled(sigma, -1.0), sigma});
@@ -188,6 +218,7 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
   figure.x_label = "time";
   figure.x_unit = std::string("s");  // g++ 12 warns wrongly about a one-letter literal assigned
   figure.panels = {motion_panel(c), residual_panel(c)};
+  if (std::string beyond = beyond_axis(c, figure.panels.back()); !beyond.empty()) figure.notes.push_back(std::move(beyond));
   return figure;
 }
 

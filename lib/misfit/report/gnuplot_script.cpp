@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "misfit/report/extent.h"
@@ -186,6 +187,35 @@ Range x_range_of(const Figure& figure) {
   return {range[0] - space, range[1] + space + beyond_bars};
 }
 
+/// In which long times are shown beside an axis, whose numbers stay in seconds.
+struct LongTime {
+  const char* unit;
+  double seconds;
+};
+
+/// nullopt: the axis is none of time, or seconds tell it as well.
+std::optional<LongTime> long_time(const Figure& figure) {
+  constexpr double hour = 3600.0, day = 24.0 * hour;
+  if (figure.x_label != "time" || figure.x_unit != "s" || !figure.x_marks.empty()) return std::nullopt;
+  const Range range = x_range_of(figure);
+  const double span = range[1] - range[0];
+  if (span >= 3.0 * day) return LongTime{"d", day};
+  return span >= 3.0 * hour ? std::optional(LongTime{"h", hour}) : std::nullopt;
+}
+
+/// Marks at whole and broken days or hours, as many as find room.
+std::vector<Mark> marks_of_time(const Range& range, const LongTime& time, double width) {
+  constexpr double room = 70.0;
+  const double least = room * (range[1] - range[0]) / (time.seconds * width), decade = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10.0 * decade;
+  for (const double part : {5.0, 2.0, 1.0}) step = part * decade >= least ? part * decade : step;
+  std::vector<Mark> marks;
+  constexpr double rounding = 1e-9;
+  for (double k = std::ceil(range[0] / (time.seconds * step) - rounding); k * step * time.seconds <= range[1] * (1.0 + rounding); k += 1.0)
+    marks.push_back({k * step * time.seconds, fmt::format("{:.10g}", k * step)});
+  return marks;
+}
+
 /// Ranges that make one unit equally long on both axes of a panel of size `w` × `h`.
 void make_equal(Range& x, Range& y, double w, double h) {
   const double scale = 1.06 * std::max((x[1] - x[0]) / w, (y[1] - y[0]) / h);
@@ -306,14 +336,14 @@ std::string panel_text(const Figure& figure, std::size_t k, const Place& place, 
                       tics_format(y_extent_of(panel), "% h"));
   text += colours_text(figure, panel);
   if (figure.x_marks.empty() && !has_columns(figure)) text += x_tics_text(x_range_of(figure), width - m.left - m.right);
-  if (!lowest)
-    return text + "unset xlabel\nset format x ''\n" +
-           (figure.x_marks.empty() ? "" : "set xtics " + marks_text(blank(figure.x_marks)) + "\n");
+  const auto time = has_columns(figure) ? std::nullopt : long_time(figure);
+  const std::vector<Mark> marks = time ? marks_of_time(x_range_of(figure), *time, width - m.left - m.right) : figure.x_marks;
+  if (!lowest) return text + "unset xlabel\nset format x ''\n" + (marks.empty() ? "" : "set xtics " + marks_text(blank(marks)) + "\n");
   if (panel.beside) return text + fmt::format("set xlabel '{}' offset 0,0.2\nset format x '%g'\n", axis_text(panel.beside->label, ""));
-  text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '{}'\n", axis_text(figure.x_label, figure.x_unit),
+  text += fmt::format("set xlabel '{}' offset 0,0.2\nset format x '{}'\n", axis_text(figure.x_label, time ? time->unit : figure.x_unit),
                       tics_format(x_range_of(figure), "%g"));
-  if (figure.x_marks.empty()) return text;
-  return text + fmt::format("set xtics {} {}\n", m.slanted ? "rotate by -20 left" : "norotate center", marks_text(figure.x_marks));
+  if (marks.empty()) return text;
+  return text + fmt::format("set xtics {} {}\n", m.slanted ? "rotate by -20 left" : "norotate center", marks_text(marks));
 }
 
 }  // namespace

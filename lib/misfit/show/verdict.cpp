@@ -10,6 +10,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/shell_word.h"
 #include "misfit/core/text.h"
+#include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
 #include "misfit/math/statistics.h"
 #include "misfit/show/error_changes.h"
@@ -37,16 +38,28 @@ std::string values_of(const Estimates& parameters) {
   return join_words(out);
 }
 
-/// What the last model estimates beside what was added, numbers alone; empty where it is more than a line says.
+/// The same without coefficients of curves; of very many the first, and how many more there are. Empty: there is none.
+std::string numbers_of(const Estimates& parameters) {
+  constexpr std::size_t most = 12;
+  std::vector<std::string> out;
+  for (const auto& [name, e] : parameters) {
+    if (!is_curve_coefficient(name)) out.push_back(name + " = " + shown(e));
+  }
+  const std::size_t more = out.size() > most ? out.size() - most : 0;
+  out.resize(out.size() - more);
+  if (more > 0) out.push_back(std::to_string(more) + " more");
+  return join_words(out);
+}
+
+/// What the last model estimates beside what was added.
 Estimates others_of_last(const Ladder& ladder) {
-  constexpr std::size_t most = 6;
   const Rung& last = ladder.rungs.back();
   Estimates out = last.estimates.value_or(Estimates{});
   for (const Rung& rung : ladder.rungs) {
     if (rung.added.empty()) continue;
     for (const auto& [name, estimate] : rung.parameters) out.erase(name);
   }
-  return out.size() > most ? Estimates{} : out;
+  return out;
 }
 
 /// "quadratic_drag: drag = 0.5010 ± 0.0004 1/m": of what was added, as the last model has it; where that differs, also as its own rung has
@@ -66,8 +79,8 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
     out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }
-  if (const Estimates rest = others_of_last(ladder); !rest.empty() && !out.empty())
-    out.push_back("other parameters of the last model: " + values_of(rest));
+  if (const std::string rest = numbers_of(others_of_last(ladder)); !rest.empty())
+    out.push_back((out.empty() ? "parameters of the last model: " : "other parameters of the last model: ") + rest);
   return out;
 }
 
@@ -112,7 +125,11 @@ class VerdictBuilder {
     if (fit_ == nullptr) {
       no_result();
     } else if (in_.discovery == nullptr) {
-      effects_added_ ? added("whether more is missing has not been looked for", command("discover")) : not_searched();
+      if (!in_.left_out.empty()) {
+        outdated();
+      } else {
+        effects_added_ ? added("whether more is missing has not been looked for", command("discover")) : not_searched();
+      }
     } else if (!in_.discovery->sweep_asks.empty()) {
       calibration();
     } else if (const Candidate* best = accepted(*in_.discovery)) {
@@ -122,6 +139,7 @@ class VerdictBuilder {
     }
     if (fit_ != nullptr && in_.discovery != nullptr && in_.discovery->fixed_parameters && out_.kind != VerdictKind::calibration)
       out_.sentence += " " + in_.discovery->fixed_parameters->front() + ".";  // begins with the parameter's name
+    add_parameters();
     return out_;
   }
 
@@ -187,6 +205,15 @@ class VerdictBuilder {
     return fmt::format("{}", fmt::join(places, " "));
   }
 
+  /// The model that was identified is the answer where no named effect is to come: a name changes the others' values. After a success they
+  /// stand in `added`.
+  void add_parameters() {
+    const bool others_come =
+        out_.kind == VerdictKind::missing || out_.kind == VerdictKind::several_possible || out_.kind == VerdictKind::calibration;
+    if (fit_ == nullptr || effects_added_ || others_come) return;
+    out_.parameters = numbers_of(fit_->parameters);
+  }
+
   /// What to do with a model that lacks nothing more: other programs take it, on other recordings.
   [[nodiscard]] std::string export_command() const {
     return misfit_command("export", in_.study, "--to json", "") + (in_.out.empty() ? "" : " --run " + shell_word(in_.out));
@@ -199,6 +226,13 @@ class VerdictBuilder {
     }
     say(VerdictKind::no_result,
         why.empty() ? "no method was asked for" : "no method gives a result: " + fmt::format("{}", fmt::join(why, "; ")), "");
+  }
+
+  /// What diagnose and discover found before does not count any more.
+  void outdated() {
+    const std::string why = in_.left_out + "; ";
+    effects_added_ ? added(why + "whether more is missing is to be looked for again", in_.anew)
+                   : say(VerdictKind::not_searched, why + "where the model fails and what it lacks are to be looked for again", in_.anew);
   }
 
   /// What fits and diagnosis alone say.
@@ -296,6 +330,25 @@ class VerdictBuilder {
     return nullptr;
   }
 
+  /// "; X was added as a curve of unknown form and taken off again: …" of each that is not untried(): what was tried, and the number that
+  /// decided.
+  [[nodiscard]] std::string curves_in_vain(const std::vector<EffectPlace>& curves) const {
+    const Rung* last = in_.ladder != nullptr && !in_.ladder->rungs.empty() ? &in_.ladder->rungs.back() : nullptr;
+    std::string out;
+    for (const EffectPlace& curve : curves) {
+      const std::string name = effect_at(curve.effect, curve.roles);
+      const std::string* why =
+          last != nullptr && last->why_too_little && last->why_too_little->contains(name) ? &last->why_too_little->at(name) : nullptr;
+      if (on_ladder(curve)) {
+        out += fmt::format("; its curve of unknown form, {}, is in the last model already and leaves this", name);
+      } else {
+        out += fmt::format("; a curve of unknown form in its place, {}, was added and taken off again", name);
+        if (why != nullptr) out += ": " + *why;
+      }
+    }
+    return out;
+  }
+
   /// " X can be added …"; empty where what is held out has spoken against it.
   [[nodiscard]] static std::string by_hand(const Candidate& rejected) {
     if (rejected.why.find("the held-out log-likelihood") != std::string::npos) return "";
@@ -312,12 +365,11 @@ class VerdictBuilder {
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const EffectPlace* curve = untried(d.unexplained_effects);
-      const bool in_vain = curve == nullptr && !d.unexplained_effects.empty();
-      if (in_vain) unknown += "; as a curve of one of them it gains too little, or cannot be fitted";
-      if (curve == nullptr && !in_vain)
-        unknown +=
-            "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help system)";
-      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles) : in_vain ? "" : command("open");
+      if (curve == nullptr)
+        unknown += curves_in_vain(d.unexplained_effects) +
+                   "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help "
+                   "system)";
+      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles) : command("open");
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
@@ -418,6 +470,7 @@ Blocks blocks_of(const Verdict& v) {
   out.paragraph(v.sentence, Tone::lead);
   out.paragraph(v.where);
   std::vector<std::string> errors = v.added;
+  if (!v.parameters.empty()) errors.push_back("parameters of the fitted model: " + v.parameters);
   for (const ErrorChange& e : v.errors) errors.push_back(e.what() + ": " + shown(e));
   if (v.trim) errors.push_back(v.trim->what() + ": " + shown(*v.trim));
   out.list({errors});

@@ -23,6 +23,8 @@ struct VerdictInput {
   const Diagnosis* rung_diagnosis = nullptr;  ///< of the last rung of the ladder
   const Discovery* discovery = nullptr;       ///< of the last rung of the ladder
   const Ladder* ladder = nullptr;
+  std::string left_out = {};  ///< results on disk that are outdated, and why: a clause; empty: there are none
+  std::string anew = {};      ///< the command that makes everything anew
 };
 
 /// In this order: no usable fit; a calibration that its own sweep contradicts (once discover has asked); an effect that discovery accepts,

@@ -256,11 +256,14 @@ std::string ModelLadder::relative_study(const Session& session) const {
   return fs::absolute(session.study.file).lexically_normal().lexically_relative(from).generic_string();
 }
 
-void ModelLadder::gained_too_little(const std::string& effect) {
+void ModelLadder::gained_too_little(const std::string& effect, const std::string& why) {
   if (ladder_.rungs.empty()) return;
   std::optional<std::vector<std::string>>& known = ladder_.rungs.back().gained_too_little;
   if (!known) known.emplace();
   known->push_back(effect);
+  std::optional<std::map<std::string, std::string>>& reasons = ladder_.rungs.back().why_too_little;
+  if (!reasons) reasons.emplace();
+  (*reasons)[effect] = why;
   store();
 }
 

@@ -95,6 +95,7 @@ class Extension {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
     if (rung.actual_drop && may_be_chance(*rung.actual_drop, parameters_added(rung), families_)) {
+      why_off_ = why_too_little(rung.actual_drop, std::nullopt, parameters_added(rung), families_);
       ladder_.root().note(fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off",
                                       effect_at(candidate.effect, candidate.roles), format_value(*rung.actual_drop)));
       ladder_.remove(std::to_string(rung.id));
@@ -127,7 +128,7 @@ class Extension {
     const std::optional<Candidate> curve = predict_effect(ladder_.last(), effect, {roles});
     if (!curve || has_left(*curve)) return false;
     if (add_tentatively(*curve, {})) return true;
-    ladder_.gained_too_little(effect_at(effect, roles));
+    ladder_.gained_too_little(effect_at(effect, roles), why_off_);
     return false;
   }
 
@@ -142,27 +143,24 @@ class Extension {
       stop_if_interrupted();
       return cannot_be_added(name, error);
     }
-    const std::string why = why_not_kept(ladder_.ladder().rungs.back());
-    if (why.empty()) return true;
-    ladder_.root().note(fmt::format("{}: {}: its rung is taken off", name, why));
+    why_off_ = why_not_kept(ladder_.ladder().rungs.back());
+    if (why_off_.empty()) return true;
+    ladder_.root().note(fmt::format("{}: {}: its rung is taken off", name, why_off_));
     ladder_.remove(std::to_string(ladder_.ladder().rungs.back().id));
     added_.pop_back();
     return false;
   }
 
   bool cannot_be_added(const std::string& name, const std::exception& error) {
+    why_off_ = std::string("it cannot be fitted: ") + error.what();
     ladder_.root().note(name + " cannot be fitted: " + error.what());
     return false;
   }
 
   /// Of a rung that was added tentatively; empty: it stays.
   [[nodiscard]] std::string why_not_kept(const Rung& rung) const {
-    const int more = parameters_added(rung);
-    if (gains_too_little(rung.actual_drop, rung.held_out_gain, more, families_)) {
-      return fmt::format("gains too little for its {} parameters (drop {}, held-out gain {})", more,
-                         rung.actual_drop ? format_value(*rung.actual_drop) : "unknown",
-                         rung.held_out_gain ? format_value(*rung.held_out_gain) : "unknown");
-    }
+    std::string too_little = why_too_little(rung.actual_drop, rung.held_out_gain, parameters_added(rung), families_);
+    if (!too_little.empty()) return too_little;
     const auto parent =
         std::find_if(ladder_.ladder().rungs.begin(), ladder_.ladder().rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
     const double growth = parent == ladder_.ladder().rungs.end() ? 1.0 : growth_of_errors(parent->k_step, rung.k_step);
@@ -291,6 +289,7 @@ class Extension {
   std::vector<OnLadder> added_;
   std::vector<Candidate> left_;
   double families_ = 1.0;  ///< that the last round tried
+  std::string why_off_;    ///< why what was added last is off again: a clause
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "misfit/jobs/interrupt.h"
 #include "misfit/page/embedded_page.h"
 #include "misfit/report/report.h"
+#include "misfit/show/blocks.h"
 #include "misfit/workflow/stages.h"
 
 namespace misfit {
@@ -70,15 +71,24 @@ std::vector<fs::path> files_of_report(const Session& session, const std::vector<
   return files;
 }
 
+/// Since a section would otherwise be missing without a word.
+void note_left_out(const Session& session, const Findings& findings, std::vector<std::string>& notes) {
+  if (!findings.left_out.empty())
+    notes.push_back(as_sentence(findings.left_out) + " " + command_for_all(session) + " makes everything anew.");
+}
+
 /// What diagnose and discover found of the study's own model and of the last rung that was asked.
 void add_findings(const Session& session, report::ReportInput& input, std::vector<fs::path>& files) {
-  Findings own = findings_of(session, input.notes);
+  Findings own = findings_of(session);
+  note_left_out(session, own, input.notes);
   input.diagnosis = std::move(own.diagnosis);
   input.discovery = std::move(own.discovery);
   files.insert(files.end(), own.files.begin(), own.files.end());
   if (!input.ladder) return;
-  auto above = findings_of_last_rung(session, *input.ladder, input.notes);
+  auto above = findings_of_last_rung(session, *input.ladder);
   if (!above) return;
+  note_left_out(session, above->findings, input.notes);
+  if (!above->findings.diagnosis && !above->findings.discovery) return;
   files.insert(files.end(), above->findings.files.begin(), above->findings.files.end());
   input.rung = report::RungInput{above->rung, above->added, std::move(above->findings.diagnosis), std::move(above->findings.discovery)};
 }

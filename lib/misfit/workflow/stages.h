@@ -22,21 +22,24 @@ std::filesystem::path report_stage(Session& session, const std::vector<Fit>& fit
 /// stage writes it to verdict.json.
 [[nodiscard]] Verdict verdict_of(Session& session, const std::vector<Fit>& fits);
 
-/// Both, and the files they are in; what is on disk but of another fit is said in `notes`.
+/// What makes everything of the study anew that its last runs have made.
+[[nodiscard]] std::string command_for_all(const Session& session);
+
+/// Both, and the files they are in.
 struct Findings {
   std::optional<Diagnosis> diagnosis;
   std::optional<Discovery> discovery;
   std::vector<std::filesystem::path> files;
+  std::string left_out;  ///< what is on disk of them but outdated, and why: a clause; empty: nothing is
 };
-[[nodiscard]] Findings findings_of(const Session& session, std::vector<std::string>& notes);
-/// Of the last rung that has any.
+[[nodiscard]] Findings findings_of(const Session& session);
+/// Of the last rung that has any; `left_out` of the last one that has that.
 struct RungFindings {
   int rung = 0;
   std::string added;
   Findings findings;
 };
-[[nodiscard]] std::optional<RungFindings> findings_of_last_rung(const Session& session, const Ladder& ladder,
-                                                                std::vector<std::string>& notes);
+[[nodiscard]] std::optional<RungFindings> findings_of_last_rung(const Session& session, const Ladder& ladder);
 /// ladder.json where it still belongs to the study and its data (workflow/ladder.h).
 [[nodiscard]] std::optional<Ladder> known_ladder(const Session& session);
 

@@ -7,10 +7,9 @@ namespace misfit {
 Verdict verdict_of(Session& session, const std::vector<Fit>& fits) {
   const std::optional<Calibration> calibration = calibrate_stage(session);
   const std::optional<Ladder> ladder = known_ladder(session);
-  std::vector<std::string> notes;  // said by the report
-  const Findings own = findings_of(session, notes);
+  const Findings own = findings_of(session);
   const bool effects_added = ladder && ladder->rungs.size() > 1;
-  const auto above = effects_added ? findings_of_last_rung(session, *ladder, notes) : std::nullopt;
+  const auto above = effects_added ? findings_of_last_rung(session, *ladder) : std::nullopt;
   const bool of_last_rung = above && above->rung == ladder->rungs.back().id;
   const auto pointer = [](const auto& result) { return result ? &*result : nullptr; };
   VerdictInput input{session.options.study, session.options.out, &fits};
@@ -21,6 +20,8 @@ Verdict verdict_of(Session& session, const std::vector<Fit>& fits) {
   input.discovery = !effects_added ? pointer(own.discovery) : of_last_rung ? pointer(above->findings.discovery) : nullptr;
   if (of_last_rung) input.rung_diagnosis = pointer(above->findings.diagnosis);
   input.ladder = pointer(ladder);
+  input.left_out = above && !above->findings.left_out.empty() ? above->findings.left_out : own.left_out;
+  input.anew = command_for_all(session);
   return verdict_of(input);
 }
 

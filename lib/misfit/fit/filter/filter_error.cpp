@@ -316,8 +316,8 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
     describe_estimates(estimate, fit);
     warn_without_effect(estimate, fit);
   }
+  warn_of_collinearity(estimate.model, fit.covariance, fit);
   add_noise(estimate, threads, fit);
-  warn_of_noise_at_bounds(estimate, fit);
   if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);
   add_predictions(estimate, fit);
   report_gaps(estimate, fit);
@@ -342,9 +342,9 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   const std::vector<std::string> scales =
       scale_uncertainties(estimate.model, first.start.data(), first.inputs.at(first.first), first.signals->t[first.first]);
   fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
-  warn_of_collinearity(estimate.model, fit.covariance, fit);
   warn_of_other_trims(fit);
   reject_prior_conflicts(estimate.model, fit.covariance, fit);
+  warn_of_noise_at_bounds(estimate, threads, fit);
   allow_for_length(estimate, fit);
   fit.linearisations = estimate.linearisations;
   return fit;

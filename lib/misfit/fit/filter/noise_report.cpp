@@ -3,10 +3,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "misfit/core/display.h"
+#include "misfit/core/text.h"
 #include "misfit/fit/filter/noise_interval.h"
 #include "misfit/math/covariance.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -68,6 +72,7 @@ struct NoisePart {
   std::size_t at;  ///< in pack()
   std::string words, unit;
   bool absent_at_lower;
+  std::optional<std::size_t> shape_of = {};  ///< the output of whose coloured noise it is the shape
 };
 
 /// Those that the fit has found; `fit`: with noise and force.
@@ -85,21 +90,66 @@ std::vector<NoisePart> noise_parts(const FilterEstimate& estimate, const Fit& fi
     out.push_back({place_in_noise::white(o), "the white" + of, spec.outputs[o].unit, false});
     out.push_back({place_in_noise::coloured(o), "the coloured" + of, spec.outputs[o].unit, true});
     if (!fit.noise.contains(spec.outputs[o].name + "_coloured")) continue;
-    out.push_back({place_in_noise::coloured_frequency(o), "the frequency of the coloured" + of, "Hz", false});
-    out.push_back({place_in_noise::coloured_damping(o), "the damping of the coloured" + of, "-", false});
+    out.push_back({place_in_noise::coloured_frequency(o), "the frequency of the coloured" + of, "Hz", false, o});
+    out.push_back({place_in_noise::coloured_damping(o), "the damping of the coloured" + of, "-", false, o});
   }
   return out;
 }
 
+/// 2 Δ log L that the coloured noise of an output gains over white noise alone, along the trajectories of the estimate: no less than with
+/// the parameters fitted again. Most white noise has as much power as both had, which decides most cases by itself; else all noise is
+/// fitted again.
+double drop_of_coloured(const FilterEstimate& estimate, std::size_t output, double least, int threads) {
+  constexpr int iterations = 4;
+  const LinearisedRuns runs{&estimate.forced, &estimate.data, &estimate.traces};
+  const double with = fit_noise(runs, estimate.noise, {estimate.reference, threads, 0}).minus_log_density;
+  FilterNoise white = estimate.noise, reference = estimate.reference;
+  ChannelNoise& channel = white.channels[output];
+  reference.channels[output].no_coloured = true;
+  channel.white = std::hypot(channel.white, channel.coloured);
+  channel.coloured = 1e-3 * reference.channels[output].white;  // its lower bound in pack()
+  const auto drop = [&](int most) { return 2.0 * (fit_noise(runs, white, {reference, threads, most}).minus_log_density - with); };
+  const double at_once = drop(0);
+  return at_once < least ? at_once : drop(iterations);
+}
+
+/// Is there coloured noise, or has the search only found the shape in which white noise looks most like it? Where it is not there, neither
+/// are its frequency and damping, and their bounds say nothing.
+class ColouredNoise {
+ public:
+  ColouredNoise(const FilterEstimate& estimate, int threads) : estimate_(estimate), threads_(threads) {}
+
+  bool is_there(std::size_t output, Fit& fit) {
+    constexpr int parameters = 3;        // strength, frequency, damping
+    constexpr double improbable = 1e-4;  // as of innovations that are not white
+    constexpr double least_drop = 21.1;  // of about that probability
+    const auto [known, first] = there_.emplace(output, true);
+    if (!first) return known->second;
+    const double drop = drop_of_coloured(estimate_, output, least_drop, threads_);
+    known->second = chi_square_tail(drop, parameters) < improbable;
+    if (!known->second)
+      fit.facts["coloured noise of " + std::string(estimate_.model.system->spec().outputs[output].name)] =
+          "hardly more likely than white noise alone (drop " + format_value(std::round(10.0 * drop) / 10.0) + ")";
+    return known->second;
+  }
+
+ private:
+  const FilterEstimate& estimate_;
+  int threads_;
+  std::map<std::size_t, bool> there_;
+};
+
 }  // namespace
 
-void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit) {
+void warn_of_noise_at_bounds(const FilterEstimate& estimate, int threads, Fit& fit) {
   constexpr double nearest = 1e-3;  // of the logarithm
   const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.reference);
-  for (const auto& [at, words, unit, absent_at_lower] : noise_parts(estimate, fit)) {
+  ColouredNoise coloured(estimate, threads);
+  for (const auto& [at, words, unit, absent_at_lower, shape_of] : noise_parts(estimate, fit)) {
     if (vector.upper[at] - vector.lower[at] < nearest) continue;  // given by the study
     const bool lower = vector.value[at] - vector.lower[at] < nearest, upper = vector.upper[at] - vector.value[at] < nearest;
     if (!upper && (!lower || absent_at_lower)) continue;
+    if (shape_of && !coloured.is_there(*shape_of, fit)) continue;
     fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
                            in_display_unit(std::exp(vector.value[at]), unit) +
                            ": the likelihood still rises beyond it, so that this is no estimate");

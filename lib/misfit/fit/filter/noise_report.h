@@ -11,7 +11,7 @@ namespace misfit {
 void add_noise(const FilterEstimate& estimate, int threads, Fit& fit);
 
 /// After add_noise(). The bounds of pack() keep a search away from where nothing is determined: an estimate there is none, and a warning
-/// says so.
-void warn_of_noise_at_bounds(const FilterEstimate& estimate, Fit& fit);
+/// says so; not of frequency and damping of a coloured noise that is hardly more likely than white noise alone.
+void warn_of_noise_at_bounds(const FilterEstimate& estimate, int threads, Fit& fit);
 
 }  // namespace misfit

@@ -10,9 +10,10 @@ namespace misfit {
 
 namespace fs = std::filesystem;
 
+StageInputs inputs_of_diagnosis(const Session& session) { return session.inputs("diagnose", files_of_filter(session)); }
+
 std::optional<Diagnosis> known_diagnosis(const Session& session) {
-  const auto inputs = session.inputs("diagnose", files_of_filter(session));
-  if (!session.folder.up_to_date("diagnose", inputs)) return std::nullopt;
+  if (!session.folder.up_to_date("diagnose", inputs_of_diagnosis(session))) return std::nullopt;
   return read_diagnosis(session.folder.path());
 }
 
@@ -33,7 +34,7 @@ std::optional<Discovery> known_discovery(const Session& session) {
 std::optional<Diagnosis> diagnose_stage(Session& session) {
   if (filter_declined(session)) return std::nullopt;
   stop_if_interrupted();
-  const auto inputs = session.inputs("diagnose", files_of_filter(session));
+  const auto inputs = inputs_of_diagnosis(session);
   session.do_stage("diagnose", inputs, {"diagnosis.json", "missing_force.csv"}, [&](const fs::path& dir) {
     const auto work = filter_work(session);
     write_diagnosis(dir, diagnose(*work->estimate, {session.options.threads, session.progress("diagnose")}));

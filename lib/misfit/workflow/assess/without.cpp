@@ -1,11 +1,16 @@
 #include "misfit/workflow/assess/without.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/text.h"
 #include "misfit/core/watch.h"
 #include "misfit/discover/discover.h"
 #include "misfit/discover/refit.h"
 #include "misfit/jobs/interrupt.h"
+#include "misfit/math/statistics.h"
 #include "misfit/workflow/estimate/estimate.h"
 
 namespace misfit {
@@ -26,8 +31,17 @@ std::optional<Without> needless(Session& session, const std::string& effect, dou
   return out && may_be_chance(out->drop, out->parameters, families) ? std::move(out) : std::nullopt;
 }
 
-bool gains_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters, double families) {
-  return (drop && may_be_chance(*drop, parameters, families)) || (held_out_gain && !(*held_out_gain > least_held_out_gain(parameters)));
+std::string why_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters, double families) {
+  const auto tenths = [](double value) { return format_value(std::round(10.0 * value) / 10.0); };
+  if (drop && may_be_chance(*drop, parameters, families)) {
+    const double p = sidak(chi_square_tail(std::max(*drop, 0.0), std::max(parameters, 1)), std::max(families, 1.0));
+    return fmt::format("what it gains may be chance (drop {} with {}, {} among {:g} that were tried)", tenths(*drop),
+                       counted(static_cast<std::size_t>(parameters), "parameter", "parameters"), p_equals(p), families);
+  }
+  if (const double least = least_held_out_gain(parameters); held_out_gain && !(*held_out_gain > least))
+    return fmt::format("what is held out is hardly predicted better with it (log-likelihood {:+.1f}; more than {} is asked for {})",
+                       *held_out_gain, tenths(least), counted(static_cast<std::size_t>(parameters), "parameter", "parameters"));
+  return "";
 }
 
 std::optional<FreedWidth> width_of(Session& session, const std::string& effect) {

@@ -17,10 +17,10 @@ namespace misfit {
 /// The same if the effect's strengths are small (may_leave()) and what it explains may be chance (may_be_chance()).
 [[nodiscard]] std::optional<Without> needless(Session& session, const std::string& effect, double families);
 
-/// May the drop of so many parameters be chance (may_be_chance()), or is their gain of the held-out log-likelihood less than discovery asks
-/// for (least_held_out_gain())? What is not known counts for them.
-[[nodiscard]] bool gains_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters,
-                                    double families);
+/// Why so many parameters gain too little: their drop may be chance (may_be_chance()), or their gain of the held-out log-likelihood is less
+/// than discovery asks for (least_held_out_gain()). Empty: they gain enough, as far as it is known.
+[[nodiscard]] std::string why_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters,
+                                         double families);
 
 /// freed_width() of an effect of the model as fitted.
 [[nodiscard]] std::optional<FreedWidth> width_of(Session& session, const std::string& effect);

@@ -7,11 +7,14 @@
 #include <stdexcept>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/core/table.h"
+#include "misfit/core/text.h"
+#include "misfit/core/version.h"
 #include "misfit/data/log/log.h"
 #include "misfit/data/sweep.h"
 #include "misfit/data/track.h"
@@ -23,6 +26,17 @@ namespace misfit {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Results of the same commit may differ, too, where the tree was changed: then only the hash of the program tells.
+bool of_another_build(const StageRecord& before, const StageInputs& inputs) {
+  const auto then = before.inputs.find("program"), now = inputs.find("program");
+  const bool same = then == before.inputs.end() || now == inputs.end() || then->second == now->second;
+  return before.version != version() || before.commit != commit() || !same;
+}
+
+std::string other_build(const StageRecord& before) {
+  return fmt::format("another build of misfit ({}, {}; this one is {}, {})", before.version, before.commit, version(), commit());
+}
 
 Study open_study(const SessionOptions& options) {
   Study study = read_study(options.study);
@@ -160,6 +174,9 @@ void Session::do_stage(const std::string& stage, const StageInputs& inputs, cons
                        const std::function<void(const fs::path&)>& make) {
   if (folder.up_to_date(stage, inputs)) return;
   const auto before = folder.stages().find(stage);
+  if (before != folder.stages().end() && of_another_build(before->second, inputs) && !std::exchange(said_program, true))
+    note(fmt::format("the results in {} are of {}: what is asked for is made anew", folder.path().lexically_normal().string(),
+                     other_build(before->second)));
   const std::vector<std::string> damaged = folder.damaged(stage);
   if (before != folder.stages().end() && before->second.inputs == inputs && !damaged.empty())
     note(fmt::format("{}{}: not as misfit wrote {}: made again", folder.file(damaged.front()).string(),
@@ -189,6 +206,22 @@ void Session::redo_stage(const std::string& stage, const StageInputs& inputs, co
     throw RunError(in_place(error.what()));
   }
   folder.commit(part, {stage, options.command, inputs, {}, clock.seconds()});
+}
+
+std::string Session::why_outdated(const std::string& stage, const StageInputs& inputs) const {
+  const auto before = folder.stages().find(stage);
+  if (before == folder.stages().end() || folder.up_to_date(stage, inputs)) return "";
+  if (of_another_build(before->second, inputs)) return "they are of " + other_build(before->second);
+  std::vector<std::string> changed;
+  for (const auto& [name, hash] : inputs) {
+    const auto known = before->second.inputs.find(name);
+    if (known != before->second.inputs.end() && known->second == hash) continue;
+    const std::string words = name == "settings" ? "the study" : name.starts_with("out/fit/") ? "the fit" : name;
+    if (std::find(changed.begin(), changed.end(), words) == changed.end()) changed.push_back(words);
+  }
+  if (!changed.empty()) return join_words(changed) + (changed.size() == 1 ? " has changed since" : " have changed since");
+  const std::vector<std::string> damaged = folder.damaged(stage);
+  return damaged.empty() ? "the study has changed since" : damaged.front() + " is not as misfit wrote it";
 }
 
 std::vector<fs::path> Session::files_of_stage(const std::string& stage) const {

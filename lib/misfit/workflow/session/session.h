@@ -74,6 +74,7 @@ struct Session {
   RunFolder folder;
   std::string program;                ///< hash of the running program: another build does everything again
   std::filesystem::path parent = {};  ///< run folder of the parent rung: what it read from videos and pictures need not be read again
+  bool said_program = false;          ///< that another build made what is there
   double usual_limit = 0.0;           ///< [s] of a fit where neither the options nor the study say; 0: none
   std::shared_ptr<const FilterWork> filter;  ///< filter_error as estimated in this run of the program, for the stages after it (stages.h)
 
@@ -95,6 +96,9 @@ struct Session {
   /// The same, whether it was done before or not.
   void redo_stage(const std::string& stage, const StageInputs& inputs, const std::vector<std::string>& files,
                   const std::function<void(const std::filesystem::path&)>& make);
+  /// Why results of a stage that are there are not those of these inputs: "they are of another build of misfit (0.2.0, 1a2b3c4; this
+  /// one is 0.2.0, 5d6e7f8)", "tank.csv has changed since". Empty: they are, or there are none.
+  [[nodiscard]] std::string why_outdated(const std::string& stage, const StageInputs& inputs) const;
   /// Where a stage's files lie; none if it was not done.
   [[nodiscard]] std::vector<std::filesystem::path> files_of_stage(const std::string& stage) const;
   /// True if this stage was done from the same inputs in the run folder of the parent rung: its files are then copied from there, and
