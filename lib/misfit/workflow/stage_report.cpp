@@ -71,6 +71,9 @@ std::vector<fs::path> files_of_report(const Session& session, const std::vector<
   return files;
 }
 
+/// The verdict stands on the search: where that is left out, it says so itself.
+bool said_by_verdict(const Findings& findings) { return !findings.left_out.empty() && !findings.discovery; }
+
 /// Since a section would otherwise be missing without a word.
 void note_left_out(const Session& session, const Findings& findings, std::vector<std::string>& notes) {
   if (!findings.left_out.empty())
@@ -80,14 +83,13 @@ void note_left_out(const Session& session, const Findings& findings, std::vector
 /// What diagnose and discover found of the study's own model and of the last rung that was asked.
 void add_findings(const Session& session, report::ReportInput& input, std::vector<fs::path>& files) {
   Findings own = findings_of(session);
-  note_left_out(session, own, input.notes);
+  auto above = input.ladder ? findings_of_last_rung(session, *input.ladder) : std::nullopt;
+  if (!said_by_verdict(above ? above->findings : own)) note_left_out(session, own, input.notes);
   input.diagnosis = std::move(own.diagnosis);
   input.discovery = std::move(own.discovery);
   files.insert(files.end(), own.files.begin(), own.files.end());
-  if (!input.ladder) return;
-  auto above = findings_of_last_rung(session, *input.ladder);
   if (!above) return;
-  note_left_out(session, above->findings, input.notes);
+  if (!said_by_verdict(above->findings)) note_left_out(session, above->findings, input.notes);
   if (!above->findings.diagnosis && !above->findings.discovery) return;
   files.insert(files.end(), above->findings.files.begin(), above->findings.files.end());
   input.rung = report::RungInput{above->rung, above->added, std::move(above->findings.diagnosis), std::move(above->findings.discovery)};

@@ -158,6 +158,7 @@ class Plot {
       return { ...s, x, sorted: (view.sortedX[s.x] ??= ascends(x)) };
     });
     this.xRange = panel.beside?.range ?? this.figure.xRange ?? this.extentOfX();
+    this.x = this.shownX();
     this.node = element('div', { class: 'panel' });
     this.legend = this.makeLegend();
     this.host = element('div', { class: 'plot', tabindex: 0, role: 'application', 'aria-roledescription': 'plot', 'aria-label': this.spoken(),
@@ -167,11 +168,18 @@ class Plot {
     this.node.append(this.legend, this.readout ?? '', this.host);
     for (const [event, live] of [['focus', 'polite'], ['blur', 'off']]) this.host.addEventListener(event, () => this.readout?.setAttribute('aria-live', live));
     if ((last && view.options.xLabel !== false) || panel.beside)
-      this.node.append(element('p', { class: 'xlabel' }, words(spaced(panel.beside?.label ?? xLabel)), panel.beside ? '' : this.unitText(this.figure.xUnit)));
+      this.node.append(element('p', { class: 'xlabel' }, words(spaced(panel.beside?.label ?? xLabel)), panel.beside ? '' : this.unitText(this.x.unit)));
     (view.row ?? view.node).append(this.node);
     this.make();
   }
 
+  /** Unit of what stands beside the axis, and how much of the figure's own it is: hours or days of long times, as in the report. */
+  shownX() {
+    const unit = this.figure.xUnit, hour = 3600, day = 24 * hour, span = this.xRange[1] - this.xRange[0];
+    const long = !this.panel.beside && plain(this.figure.xLabel) === 'time' && plain(unit) === 's' && this.figure.xMarks.length === 0;
+    if (long && span >= 3 * day) return { unit: 'd', size: day };
+    return long && span >= 3 * hour ? { unit: 'h', size: hour } : { unit, size: 1 };
+  }
   unitText(unit) {
     const out = document.createDocumentFragment();
     if (unit && plain(unit) !== '' && plain(unit) !== '-') out.append(' [', words(unit), ']');
@@ -276,8 +284,8 @@ class Plot {
 
   /** What stands at a place: "12.35 s · measured 121 · predicted 121.1 ± 1.8 px". */
   words(x) {
-    const xUnit = plain(this.figure.xUnit), unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
-    const out = [`${this.view.group ? '' : `${plain(spaced(this.figure.xLabel))} `}${shownPlace(x, this.window[1] - this.window[0])}${behind(xUnit)}`];
+    const { unit: xUnit, size } = this.x, unit = plain(this.panel.unit), behind = (one) => (one === '' || one === '-' ? '' : ` ${one}`);
+    const out = [`${this.view.group ? '' : `${plain(spaced(this.figure.xLabel))} `}${shownPlace(x / size, (this.window[1] - this.window[0]) / size)}${behind(plain(xUnit))}`];
     for (const { s, name, sigma, span } of this.values) {
       if (s.x.length === 0) continue;
       const k = nearest(s.x, x), v = s.y?.[k] ?? null, lo = sigma?.band.lo[k] ?? null, hi = sigma?.band.hi[k] ?? null;
@@ -310,7 +318,9 @@ class Plot {
     const values = (u, splits, axis, space, step) => splits.map((v) => (v === null ? '' : tick(v, step)));
     const letters = (low, high) => Math.max(...[low, high].map((v) => tick(v, 0.1 * (high - low)).length));
     const marked = (marks) => ({ splits: () => marks.map(([at]) => at), values: () => marks.map(([, text]) => plain(text)) });
-    const x = { ...axis, values, show: true, space: (u, axis, low, high) => Math.max(50, 7.4 * letters(low, high) + 14), size: this.last || this.panel.beside ? 26 : 8 };
+    const { size } = this.x, steps = Array.from({ length: 24 }, (_, k) => size * [1, 2, 5][k % 3] * 10 ** (Math.floor(k / 3) - 5));
+    const inUnit = (u, splits, axis, space, step) => splits.map((v) => (v === null ? '' : tick(v / size, step / size)));
+    const x = { ...axis, ...(size === 1 ? { values } : { values: inUnit, incrs: steps }), show: true, space: (u, axis, low, high) => Math.max(50, 7.4 * letters(low, high) + 14), size: this.last || this.panel.beside ? 26 : 8 };
     const names = this.figure.xMarks;
     if (names.length > 0 && !this.panel.beside)
       Object.assign(x, marked(names), { values: () => names.map(([, text]) => shortened(plain(text), Math.max(Math.floor((this.width() - 70) / names.length / 7.4), 5))) });
