@@ -157,6 +157,10 @@ bool is_called_input(const std::string& name) {
   return is_called(name, input_words) || is_weather(name) ||
          (before != std::string::npos && is_called(name.substr(before + 1), last_words));
 }
+bool are_called_in_and_out(const std::string& in, const std::string& out) {
+  const std::string end = lower_case(out);
+  return end.ends_with("out") && lower_case(in) == end.substr(0, end.size() - 3) + "in";
+}
 bool is_called_segment(const std::string& name) { return is_called(name, segment_words); }
 
 }  // namespace misfit

@@ -238,7 +238,12 @@ class ColumnClassifier {
     }
   }
 
-  static bool looks_like_input(const ColumnSurvey& c) { return is_called_input(c.name) || c.is_stepwise; }
+  /// "t_out" beside "t_in" may be outdoors, or where water comes out: the name does not say which of the two drives the other.
+  [[nodiscard]] bool is_named_input(const ColumnSurvey& c) const {
+    return is_called_input(c.name) && std::none_of(out_.columns.begin(), out_.columns.end(),
+                                                   [&](const ColumnSurvey& other) { return are_called_in_and_out(other.name, c.name); });
+  }
+  [[nodiscard]] bool looks_like_input(const ColumnSurvey& c) const { return is_named_input(c) || c.is_stepwise; }
 
   void find_inputs_and_outputs() {
     std::vector<std::size_t> open;
@@ -251,7 +256,7 @@ class ColumnClassifier {
     const bool may_be_input = choice_.inputs.empty() && (measured || open.size() > 1);
     for (const std::size_t i : open) {
       ColumnSurvey& c = out_.columns[i];
-      if (may_be_input && is_called_input(c.name)) {
+      if (may_be_input && is_named_input(c)) {
         c.use = ColumnUse::input;
         c.why = "named like an input";
       } else if (may_be_input && c.is_stepwise) {
@@ -268,7 +273,7 @@ class ColumnClassifier {
       c.is_measured_input = c.use == ColumnUse::input && is_smooth(values(i));
     }
     if (!of_use(ColumnUse::output).empty()) return;
-    const auto unlike = std::find_if(open.rbegin(), open.rend(), [this](std::size_t i) { return !is_called_input(out_.columns[i].name); });
+    const auto unlike = std::find_if(open.rbegin(), open.rend(), [this](std::size_t i) { return !is_named_input(out_.columns[i]); });
     ColumnSurvey& last = out_.columns[unlike == open.rend() ? open.back() : *unlike];
     last.use = ColumnUse::output;
     last.is_measured_input = false;
