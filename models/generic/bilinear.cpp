@@ -14,10 +14,8 @@ struct Bilinear {
   static constexpr const char* valid = "an action in proportion to the input and to the distance of the factor from its neutral value";
   static constexpr const char* size = "a damper of 100 N s/m per ampere at 0.5 A and 0.2 m/s: 10 N against the motion";
   static constexpr const char* source = "Mohler, Bilinear Control Processes (1973): x' = A x + B u + u N x";
-  Ljung, System Identification(1999),
-      5.2 ";
-      static constexpr const char *excludes =
-          "a difference of two levels times the input (bilinear_exchange), powers of input or state, a lag of the input (input_lag)";
+  static constexpr const char* excludes =
+      "a difference of two levels times the input (bilinear_exchange), powers of input or state, a lag of the input (input_lag)";
 
   enum Quantity { input, factor };
   static constexpr Role quantities[] = {{.name = "input", .unit = "*"}, {.name = "factor", .unit = "*"}};

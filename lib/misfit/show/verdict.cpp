@@ -365,10 +365,11 @@ class VerdictBuilder {
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const EffectPlace* curve = untried(d.unexplained_effects);
-      if (curve == nullptr)
+      if (curve == nullptr) {
         unknown += curves_in_vain(d.unexplained_effects) +
                    "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help "
                    "system)";
+      }
       const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles) : command("open");
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
