@@ -43,6 +43,24 @@ std::string house() {
   return text;
 }
 
+/// Water of 30 l that is heated while some of it is drawn, with the names of the house: T_in is the inlet.
+std::string heater() {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  std::string text = "t[s],power[kW],flow[l/min],T_in[degC],T_out[degC]\n";
+  double T = 40.0, power = 3.0, flow = 1.0;
+  for (int k = 0; k < 1500; ++k) {
+    if (k % 90 == 0) power = 6.0 * uniform(random);
+    if (k % 50 == 0) flow = 4.0 * uniform(random);
+    const double inlet = 12.0 + 2.0 * std::sin(0.005 * k) + 0.3 * std::sin(0.007 * k);
+    text += fmt::format("{},{:.3f},{:.2f},{:.2f},{:.2f}\n", 5 * k, power, flow, inlet, T + 0.08 * normal(random));
+    flow = std::round(100.0 * flow) / 100.0;
+    for (int i = 0; i < 20; ++i) T += 0.25 * (1000.0 * power / 4186.0 + flow / 60.0 * (inlet - T) - 2.0 / 4186.0 * (T - 20.0)) / 30.0;
+  }
+  return text;
+}
+
 struct Verdict {
   std::string model, kind, sentence;
 };
@@ -70,6 +88,13 @@ TEST(StrangersFile, OfAHouseItTakesTheWeatherAsAnInputAndAddsNothing) {
   EXPECT_THAT(v.model, HasSubstr("T_in = \"(T_in_rest + T_in_gain_T_out*T_out + T_in_gain_heater*heater - T_in)/T_in_tau\""));
   EXPECT_THAT(v.model, HasSubstr("T_out = { unit = \"K\", hold = \"first_order\" }"));
   EXPECT_TRUE(v.kind == "nothing_missing" || v.kind == "random_force" || v.kind == "not_decided") << v.sentence;
+}
+
+TEST(StrangersFile, OfAHeaterItTakesTheInletAsAnInputAndNamesWhatTheFlowDoes) {
+  const Verdict v = verdict_on("heater", heater());
+  EXPECT_THAT(v.model, HasSubstr("T_in = { unit = \"K\""));
+  EXPECT_THAT(v.model, HasSubstr("T_out = \"(T_out_rest"));
+  EXPECT_THAT(v.sentence, testing::StartsWith("bilinear_exchange was missing"));
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ TEST(Recording, TheWeatherIsNoOutputOfTheHeatingAndHeadersAreTakenAsTheyStand) {
       survey_recording(folder.write("x.csv", house), {}, {.inputs = {"heating power", "Außentemperatur"}, .outputs = {"T_in"}});
   EXPECT_EQ(column(chosen, "heating_power").use, ColumnUse::input);
   for (const char* name : {"outdoor_temperature", "T_out", "ambient_K", "solar_gain"}) {
-    const RecordingSurvey named = survey(rows(fmt::format("t[s],{},T_in", name), 200,
+    const RecordingSurvey named = survey(rows(fmt::format("t[s],{},T_room", name), 200,
                                               [](int k) { return fmt::format("{},{},{}", k, std::sin(0.1 * k), std::cos(0.07 * k)); }));
     EXPECT_EQ(named.columns[1].use, ColumnUse::input) << name;
   }

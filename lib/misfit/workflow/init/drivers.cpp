@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "misfit/fit/regression/influence.h"
+#include "misfit/recording/column_facts.h"
 
 namespace misfit {
 namespace {
@@ -24,9 +25,7 @@ struct Columns {
   }
 };
 
-}  // namespace
-
-void take_measured_inputs(RecordingSurvey& survey) {
+void take_what_nothing_predicts(RecordingSurvey& survey) {
   const auto longest =
       std::max_element(survey.parts.begin(), survey.parts.end(), [](const Table& a, const Table& b) { return a.rows() < b.rows(); });
   Columns all;
@@ -52,6 +51,26 @@ void take_measured_inputs(RecordingSurvey& survey) {
     c->is_measured_input = true;
     c->why = "nothing else in the file helps to predict it, unlike " + (*helped)->name;
   }
+}
+
+/// Of "t_in" and "t_out" the second is outdoors, unless the data have said that the first drives it.
+void take_outdoors(RecordingSurvey& survey) {
+  const auto is_output = [](const ColumnSurvey& c) { return c.use == ColumnUse::output; };
+  for (ColumnSurvey& out : survey.columns) {
+    const bool beside_one = std::any_of(survey.columns.begin(), survey.columns.end(),
+                                        [&](const ColumnSurvey& in) { return is_output(in) && are_called_in_and_out(in.name, out.name); });
+    if (!is_output(out) || out.chosen_by_user || !beside_one || !is_called_input(out.name)) continue;
+    out.use = ColumnUse::input;
+    out.is_measured_input = true;
+    out.why = "named like an input";
+  }
+}
+
+}  // namespace
+
+void take_measured_inputs(RecordingSurvey& survey) {
+  take_what_nothing_predicts(survey);
+  take_outdoors(survey);
 }
 
 }  // namespace misfit
