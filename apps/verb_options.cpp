@@ -97,9 +97,8 @@ void add_work(CLI::App& verb, Options& options) {
 }
 
 constexpr const char* until_nothing_is_gained =
-    "add the accepted effect, or where none is accepted a curve of unknown form, and search again, until nothing more is gained or 12 "
-    "rounds "
-    "are done; rungs that later ones make needless are taken off";
+    "add the accepted effect, or where none is accepted the one that explains most or a curve of unknown form, and search again, until "
+    "nothing more is gained or 12 rounds are done; rungs that later ones make needless are taken off";
 
 // The options of each verb.
 void study_options(CLI::App& verb, Options& options) {
