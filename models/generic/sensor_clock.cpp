@@ -25,7 +25,8 @@ struct SensorClock {
        .upper = 1e6,
        .scale = 0.01,
        .doc = "how much later than its stamp a measurement is",
-       .lower_as_candidate = 0.0},
+       .lower_as_candidate = 0.0,
+       .steps_as_candidate = 40.0},
       {.name = "clock_rate", .unit = "-", .lower = -0.1, .upper = 0.1, .scale = 1e-4, .doc = "growth of the offset with time"},
   };
 

@@ -17,7 +17,13 @@ struct TimeOffset {
   static constexpr Role ports[] = {{.name = "sample_time", .unit = "s"}};
   enum Coefficient { clock_offset };
   static constexpr CoefficientSpec coefficients[] = {
-      {.name = "clock_offset", .unit = "s", .lower = -1e6, .upper = 1e6, .scale = 0.01, .doc = "offset of the clock"},
+      {.name = "clock_offset",
+       .unit = "s",
+       .lower = -1e6,
+       .upper = 1e6,
+       .scale = 0.01,
+       .doc = "offset of the clock",
+       .steps_as_candidate = 40.0},
   };
 
   template <class T, class K>

@@ -48,15 +48,17 @@ Signals carriage(double middle) {
   return s;
 }
 
-/// The first cell's first shape, and the last's.
-std::pair<double, double> scanned(const Signals& recorded, const std::string& kind) {
+/// The first cell's first shape, and the last's; of the first place, or of that with this factor.
+std::pair<double, double> scanned(const Signals& recorded, const std::string& kind, const std::string& factor = "") {
   const auto systems = registry_with(carriage_text);
   const ModelRequest request = request_of("text");
   const std::vector<Signals> signals = {recorded};
   const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
   const std::vector<CandidateModel> all = candidate_models(estimate, request, *systems, nullptr);
-  const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateModel& c) { return c.effect == kind; });
-  if (found == all.end()) return {};
+  const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateModel& c) {
+    return c.effect == kind && (factor.empty() || (c.roles.contains("factor") && c.roles.at("factor") == factor));
+  });
+  if (found == all.end()) throw std::invalid_argument("no candidate " + kind + " " + factor);
   return {found->cells.front().front(), found->cells.back().front()};
 }
 
@@ -69,6 +71,23 @@ TEST(Scan, OfWhatDependsOnHowFarAMotionGoesDoesNotDependOnWhere) {
   const auto [least, most] = scanned(carriage(2.0), "hysteresis");
   EXPECT_NEAR(least, 0.06 * 0.05, 0.1 * 0.06 * 0.05);
   EXPECT_NEAR(most, 0.5 * 0.05, 0.1 * 0.5 * 0.05);
+}
+
+/// The speed goes through 0; a position 2 m away does not, and its product with the input would be nearly the input itself.
+TEST(Scan, OfAProductIsAtTheFactorNearestToZero) {
+  const auto [of_speed, same] = scanned(carriage(2.0), "bilinear");
+  EXPECT_EQ(of_speed, 0.0);
+  EXPECT_EQ(same, 0.0);
+  EXPECT_NEAR(scanned(carriage(2.0), "bilinear", "x").first, 1.95, 0.005);
+  EXPECT_NEAR(scanned(carriage(-2.0), "bilinear", "x").first, -1.95, 0.005);
+}
+
+/// The amplitude of the input is 0.3 sqrt(37) m/s^2, its samples are 20 ms apart.
+TEST(Scan, OfARateLimitIsOverWhatTheInputCouldDoBetweenSamples) {
+  const double largest = 0.3 * std::sqrt(1.0 + 36.0), per_sample = largest / 0.02;
+  const auto [least, most] = scanned(carriage(0.0), "rate_limit");
+  EXPECT_NEAR(least, 0.003 * per_sample, 0.02 * 0.003 * per_sample);
+  EXPECT_NEAR(most, 0.3 * per_sample, 0.02 * 0.3 * per_sample);
 }
 
 /// Times with four digits, of which no difference of two is the interval.

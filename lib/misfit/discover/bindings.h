@@ -22,11 +22,10 @@ using Roles = std::map<std::string, std::string>;
 /// state is its `rate` if its unit is, or if the equations make it the rate of another quantity, its `displacement` and `level`.
 /// `displacement` is also each input of its unit, where the effect allows that (Role::input_too). `to_port` is each other such port,
 /// `other` each other state of the level's unit, and each input of it where the effect allows that. `factor` is each state among `rate` and
-/// `level`. `other_signal` is each other output of the output's unit (with `other_output`: each pair
-/// once). `input` is each input and `output` each output (`signal` follows it), if the system has a default for `input`, or for `signal`:
-/// its way of saying that generic effects make sense there. The time of all outputs (`sample_time`) has a place only in a system with
-/// inputs: where nothing known has a clock, a motion at another time is as likely. Units are not looked at otherwise: assemble() refuses
-/// what does not suit.
+/// `level`. `other_signal` is each other output of the output's unit (with `other_output`: each pair once). `input` is each input and
+/// `output` each output (`signal` follows it), if the system has a default for `input`, or for `signal`: its way of saying that generic
+/// effects make sense there. The time of all outputs (`sample_time`) has a place only in a system with inputs: where nothing known has a
+/// clock, a motion at another time is as likely. Units are not looked at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
 /// What a recording visits: sizes for the shapes of effects that take any unit. Keeps a pointer to the estimate; for one thread.

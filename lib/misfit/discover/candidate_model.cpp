@@ -127,19 +127,12 @@ void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::
   out.priors.mean[i] = mean;
 }
 
-bool of_clocks(const EffectSpec& effect) {
-  return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& role) {
-    return std::string_view(role.name) == all_sample_times || std::string_view(role.name) == "time_of_output";
-  });
-}
-
-/// As far off as a clock is looked for. Each sample is then predicted from so many steps away, and what the slope of the outputs in time
-/// says about it holds for a few samples only.
-void bound_offset_of_clock(double step, Parameter& offset) {
-  constexpr double steps = 40.0;
-  if (!(step > 0.0) || offset.unit != "s") return;
-  offset.lower = std::max(offset.lower, -steps * step);
-  offset.upper = std::min(offset.upper, steps * step);
+/// As far off as discovery looks for a strength: CoefficientSpec::lower_as_candidate, steps_as_candidate.
+void bound_as_candidate(const CoefficientSpec& c, double step, Parameter& p) {
+  p.lower = std::max(p.lower, c.lower_as_candidate);
+  if (!(c.steps_as_candidate > 0.0 && step > 0.0)) return;
+  p.lower = std::max(p.lower, -c.steps_as_candidate * step);
+  p.upper = std::min(p.upper, c.steps_as_candidate * step);
 }
 
 void fill(const Effect& effect, const Calibration* calibration, const OperatingRange& operating_range, CandidateModel& out) {
@@ -155,8 +148,7 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
       p.free = true;
       p.value = 0.0;
       out.strengths.push_back(parameter);
-      p.lower = std::max(p.lower, coefficients[c].lower_as_candidate);
-      if (of_clocks(effect.spec())) bound_offset_of_clock(operating_range.step(), p);
+      bound_as_candidate(coefficients[c], operating_range.step(), p);
       out.one_sided.push_back(p.lower >= 0.0);
       strength_specs.push_back(&coefficients[c]);
     } else if (coefficients[c].scan.count > 0) {

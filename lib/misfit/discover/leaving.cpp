@@ -80,9 +80,13 @@ void copy_values(const Model& from, Model& to) {
 
 }  // namespace
 
+double chance_of(double drop, int parameters, double families) {
+  return sidak(chi_square_tail(std::max(drop, 0.0), std::max(parameters, 1)), std::max(families, 1.0));
+}
+
 bool may_be_chance(double drop, int parameters, double families) {
   constexpr double by_chance = 0.01;
-  return sidak(chi_square_tail(std::max(drop, 0.0), std::max(parameters, 1)), std::max(families, 1.0)) > by_chance;
+  return chance_of(drop, parameters, families) > by_chance;
 }
 
 bool may_leave(const FilterEstimate& estimate, const std::string& name, double sigmas) {

@@ -24,8 +24,9 @@ struct Without {
 /// limit of time was spent.
 [[nodiscard]] std::optional<Without> without_effect(const FittedStudy& fitted, const std::string& name, int threads);
 
-/// May the drop of 2 log L of an effect with so many parameters be chance, if it is one of so many that were tried? Family-wise p (Sidak)
-/// above 0.01, as for acceptance.
+/// Family-wise p (Sidak) of the drop of 2 log L of an effect with so many parameters, if it is one of so many that were tried.
+[[nodiscard]] double chance_of(double drop, int parameters, double families);
+/// May it be chance? Above 0.01, as for acceptance.
 [[nodiscard]] bool may_be_chance(double drop, int parameters, double families);
 
 /// A Wald test that is quick: are all free strengths of the effect within `sigmas` of 0 (4.5: p = 7e-6)? Else it is needed, whatever a fit

@@ -80,8 +80,8 @@ struct OneStep {
 /// and without it: from the estimate with the effect added to it, which an effect that the other parameters must make room for can throw
 /// out of the finite numbers; where that, too, reaches none, or one below the estimate: from the estimate with the effect in it but off,
 /// below which the search does not end. A strength at which the effect would be whole (whole_strength.h) is then fixed there if that costs
-/// the log-likelihood at most 2; from the part that was found, else from the best of the shapes that the screening looked at. A lag and a
-/// pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a shape that may drift
+/// the log-likelihood at most 2: from what was found and from the best of the shapes that the screening looked at, the higher of the two. A
+/// lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a shape that may drift
 /// (CoefficientSpec::drift_of) does if the data ask for it.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 

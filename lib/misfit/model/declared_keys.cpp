@@ -33,8 +33,8 @@ KeyGroup display_group() {
        .meaning = "Angles and their rates: deg, deg/s, deg/s^2, or rad, rad/s, rad/s^2; knots without a unit are in it, too."},
       {.name = "units", .type = Type::texts, .otherwise = "SI",
        .meaning = "Units in which states, inputs, outputs, quantities and parameters of their kind are shown, as [\"rpm\", \"degC\", \"kW\"], "
-                  "and parameters made of them: what is in K/W, in K/kW; errors and differences of temperatures in K. Knots without a unit are in them, too, those of temperatures in K. What is "
-                  "[1] is shown in % only if it is no parameter."}}};
+                  "and parameters made of them: what is in K/W, in K/kW; errors and differences of temperatures in K. Knots without a unit are "
+                  "in them, too, those of temperatures in K. What is [1] is shown in % only if it is no parameter."}}};
 }
 
 std::vector<KeyGroup> state_groups() {

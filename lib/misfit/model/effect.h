@@ -110,6 +110,9 @@ struct CoefficientSpec {
   double prior_sigma = 0.0;        ///< as a candidate: Gaussian about 0 where there is no calibration [unit]; 0: no prior
   /// Of a strength: discovery does not look below it, where another effect says the same better (a late sensor is a sensor_delay).
   double lower_as_candidate = -std::numeric_limits<double>::infinity();
+  /// Of a strength that is a time: discovery looks within so many sampling intervals of 0, since what the outputs' slope in time says of an
+  /// offset holds for a few of them, and each is predicted from as many away. 0: as far as its bounds.
+  double steps_as_candidate = 0.0;
   double own_sigma = 0.0;  ///< in every fit: Gaussian about the value [unit]; 0: no prior
   /// It is the coefficient of this name, number or curve, of another effect in the model: for effects that change what another one adds (a
   /// wake that weakens the static moment). InputError where no effect of the model has it. Declared as a shape; name, unit and doc count,

@@ -131,18 +131,18 @@ std::optional<std::array<double, 2>> range_of_residuals(const std::vector<double
   return std::array{-margin * extent, margin * extent};
 }
 
-/// "2 of 4465 residuals lie beyond the axis, the largest, 12.3 mm, at 61.2 s"; empty: none does.
+/// "Residuals lie beyond the axis, the largest, 12.3 mm, at 61.2 s"; empty: none does. Not how many: the page draws long recordings by
+/// their least and largest values only.
 std::string beyond_axis(const ChannelPrediction& c, const Panel& panel) {
   if (!panel.y_range) return "";
   const std::vector<double> r = display_values(residuals(c), c.unit);
-  std::size_t beyond = 0, largest = 0;
+  std::optional<std::size_t> largest;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) > (*panel.y_range)[1])) continue;
-    if (beyond++ == 0 || std::abs(r[k]) > std::abs(r[largest])) largest = k;
+    if (std::abs(r[k]) > (largest ? std::abs(r[*largest]) : (*panel.y_range)[1])) largest = k;
   }
-  if (beyond == 0) return "";
-  return fmt::format("{} of {} residuals {} beyond the axis, the largest, {}, at {:.6g} s", beyond, count_finite(r),
-                     beyond == 1 ? "lies" : "lie", with_display_unit(fmt::format("{:.3g}", r[largest]), c.unit), c.t[largest]);
+  if (!largest) return "";
+  return fmt::format("Residuals lie beyond the axis, the largest, {}, at {:.6g} s",
+                     with_display_unit(fmt::format("{:.3g}", r[*largest]), c.unit), c.t[*largest]);
 }
 
 Panel residual_panel(const ChannelPrediction& c) {

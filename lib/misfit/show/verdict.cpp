@@ -10,16 +10,14 @@
 #include "misfit/core/display.h"
 #include "misfit/core/shell_word.h"
 #include "misfit/core/text.h"
-#include "misfit/data/curve_coefficient.h"
 #include "misfit/data/estimators.h"
 #include "misfit/math/statistics.h"
 #include "misfit/show/error_changes.h"
 #include "misfit/show/rows.h"
+#include "misfit/show/verdict_estimates.h"
 
 namespace misfit {
 namespace {
-
-using Estimates = std::map<std::string, Estimate>;
 
 /// The fit that the verdict is about: of the method with a random force where that was used, else the last one that has residuals.
 const Fit* leading_fit(const std::vector<Fit>& fits) {
@@ -30,58 +28,6 @@ const Fit* leading_fit(const std::vector<Fit>& fits) {
     if (last == nullptr || !fit.rms.empty()) last = &fit;
   }
   return last;
-}
-
-std::string values_of(const Estimates& parameters) {
-  std::vector<std::string> out;
-  for (const auto& [name, e] : parameters) out.push_back(name + " = " + shown(e));
-  return join_words(out);
-}
-
-/// The same without coefficients of curves; of very many the first, and how many more there are. Empty: there is none.
-std::string numbers_of(const Estimates& parameters) {
-  constexpr std::size_t most = 12;
-  std::vector<std::string> out;
-  for (const auto& [name, e] : parameters) {
-    if (!is_curve_coefficient(name)) out.push_back(name + " = " + shown(e));
-  }
-  const std::size_t more = out.size() > most ? out.size() - most : 0;
-  out.resize(out.size() - more);
-  if (more > 0) out.push_back(std::to_string(more) + " more");
-  return join_words(out);
-}
-
-/// What the last model estimates beside what was added.
-Estimates others_of_last(const Ladder& ladder) {
-  const Rung& last = ladder.rungs.back();
-  Estimates out = last.estimates.value_or(Estimates{});
-  for (const Rung& rung : ladder.rungs) {
-    if (rung.added.empty()) continue;
-    for (const auto& [name, estimate] : rung.parameters) out.erase(name);
-  }
-  return out;
-}
-
-/// "quadratic_drag: drag = 0.5010 ± 0.0004 1/m": of what was added, as the last model has it; where that differs, also as its own rung has
-/// it.
-std::vector<std::string> added_with_estimates(const Ladder& ladder) {
-  std::vector<std::string> out;
-  const Rung& last = ladder.rungs.back();
-  for (const Rung& rung : ladder.rungs) {
-    if (rung.added.empty() || rung.parameters.empty()) continue;
-    Estimates now = rung.parameters;
-    for (auto& [name, estimate] : now) {
-      if (last.estimates && last.estimates->contains(name)) estimate = last.estimates->at(name);
-    }
-    std::string line = added_in_words(rung, ladder) + ": " + values_of(now);
-    if (&rung != &last && values_of(now) != values_of(rung.parameters))
-      line += fmt::format(" in the last model ({} in rung {})", values_of(rung.parameters), rung.id);
-    if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
-    out.push_back(line + (rung.also ? "; " + *rung.also : ""));
-  }
-  if (const std::string rest = numbers_of(others_of_last(ladder)); !rest.empty())
-    out.push_back((out.empty() ? "parameters of the last model: " : "other parameters of the last model: ") + rest);
-  return out;
 }
 
 /// What the likelihood says of what a rung added. A part: something remained beside it, and still does at the end of the ladder, so that it

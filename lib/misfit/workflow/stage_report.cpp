@@ -71,25 +71,27 @@ std::vector<fs::path> files_of_report(const Session& session, const std::vector<
   return files;
 }
 
-/// The verdict stands on the search: where that is left out, it says so itself.
-bool said_by_verdict(const Findings& findings) { return !findings.left_out.empty() && !findings.discovery; }
-
-/// Since a section would otherwise be missing without a word.
-void note_left_out(const Session& session, const Findings& findings, std::vector<std::string>& notes) {
-  if (!findings.left_out.empty())
-    notes.push_back(as_sentence(findings.left_out) + " " + command_for_all(session) + " makes everything anew.");
+/// Outdated results are named, since a section would otherwise be missing without a word, and once: those of the last rung before those of
+/// the study's own model, which one command makes anew with it; and not where the verdict, which has no search of its model then, says it.
+void note_left_out(const Session& session, const Findings& own, const std::optional<RungFindings>& above, report::ReportInput& input) {
+  const bool effects_added = input.ladder && input.ladder->rungs.size() > 1;
+  const bool of_rung = above && !above->findings.left_out.empty();
+  const Findings& outdated = of_rung ? above->findings : own;
+  const bool searched = outdated.discovery && (!of_rung || above->rung == input.ladder->rungs.back().id);
+  const bool in_verdict = (of_rung || !effects_added) && !searched;
+  if (in_verdict || outdated.left_out.empty()) return;
+  input.notes.push_back(as_sentence(outdated.left_out) + " " + command_for_all(session) + " makes everything anew.");
 }
 
 /// What diagnose and discover found of the study's own model and of the last rung that was asked.
 void add_findings(const Session& session, report::ReportInput& input, std::vector<fs::path>& files) {
   Findings own = findings_of(session);
   auto above = input.ladder ? findings_of_last_rung(session, *input.ladder) : std::nullopt;
-  if (!said_by_verdict(above ? above->findings : own)) note_left_out(session, own, input.notes);
+  note_left_out(session, own, above, input);
   input.diagnosis = std::move(own.diagnosis);
   input.discovery = std::move(own.discovery);
   files.insert(files.end(), own.files.begin(), own.files.end());
   if (!above) return;
-  if (!said_by_verdict(above->findings)) note_left_out(session, above->findings, input.notes);
   if (!above->findings.diagnosis && !above->findings.discovery) return;
   files.insert(files.end(), above->findings.files.begin(), above->findings.files.end());
   input.rung = report::RungInput{above->rung, above->added, std::move(above->findings.diagnosis), std::move(above->findings.discovery)};

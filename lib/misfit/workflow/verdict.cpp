@@ -20,7 +20,7 @@ Verdict verdict_of(Session& session, const std::vector<Fit>& fits) {
   input.discovery = !effects_added ? pointer(own.discovery) : of_last_rung ? pointer(above->findings.discovery) : nullptr;
   if (of_last_rung) input.rung_diagnosis = pointer(above->findings.diagnosis);
   input.ladder = pointer(ladder);
-  input.left_out = above && !above->findings.left_out.empty() ? above->findings.left_out : own.left_out;
+  input.left_out = !effects_added ? own.left_out : above ? above->findings.left_out : "";
   input.anew = command_for_all(session);
   return verdict_of(input);
 }

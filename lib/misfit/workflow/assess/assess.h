@@ -38,10 +38,10 @@ struct AskedPlace {
 /// for another). InputError: it can, but at other places only.
 [[nodiscard]] std::optional<Candidate> predict_effect(Session& session, const std::string& effect, const AskedPlace& place = {});
 /// What these stages left on disk, where it still belongs to the fit that is there.
-[[nodiscard]] StageInputs inputs_of_diagnosis(const Session& session);
 [[nodiscard]] std::optional<Diagnosis> known_diagnosis(const Session& session);
 [[nodiscard]] std::optional<Discovery> known_discovery(const Session& session);
-/// What discovery depends on.
+/// What diagnosis and discovery depend on.
+[[nodiscard]] StageInputs inputs_of_diagnosis(const Session& session);
 [[nodiscard]] StageInputs inputs_of_discovery(const Session& session);
 
 }  // namespace misfit

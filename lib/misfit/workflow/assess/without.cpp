@@ -10,7 +10,6 @@
 #include "misfit/discover/discover.h"
 #include "misfit/discover/refit.h"
 #include "misfit/jobs/interrupt.h"
-#include "misfit/math/statistics.h"
 #include "misfit/workflow/estimate/estimate.h"
 
 namespace misfit {
@@ -34,9 +33,9 @@ std::optional<Without> needless(Session& session, const std::string& effect, dou
 std::string why_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters, double families) {
   const auto tenths = [](double value) { return format_value(std::round(10.0 * value) / 10.0); };
   if (drop && may_be_chance(*drop, parameters, families)) {
-    const double p = sidak(chi_square_tail(std::max(*drop, 0.0), std::max(parameters, 1)), std::max(families, 1.0));
     return fmt::format("what it gains may be chance (drop {} with {}, {} among {:g} that were tried)", tenths(*drop),
-                       counted(static_cast<std::size_t>(parameters), "parameter", "parameters"), p_equals(p), families);
+                       counted(static_cast<std::size_t>(parameters), "parameter", "parameters"),
+                       p_equals(chance_of(*drop, parameters, families)), families);
   }
   if (const double least = least_held_out_gain(parameters); held_out_gain && !(*held_out_gain > least))
     return fmt::format("what is held out is hardly predicted better with it (log-likelihood {:+.1f}; more than {} is asked for {})",
