@@ -130,7 +130,7 @@ void add_prior(const CoefficientSpec& c, const Calibration* calibration, Eigen::
 /// As far off as discovery looks for a strength: CoefficientSpec::lower_as_candidate, steps_as_candidate.
 void bound_as_candidate(const CoefficientSpec& c, double step, Parameter& p) {
   p.lower = std::max(p.lower, c.lower_as_candidate);
-  if (!(c.steps_as_candidate > 0.0 && step > 0.0)) return;
+  if (c.steps_as_candidate <= 0.0 || step <= 0.0) return;
   p.lower = std::max(p.lower, -c.steps_as_candidate * step);
   p.upper = std::min(p.upper, c.steps_as_candidate * step);
 }
