@@ -187,6 +187,30 @@ TEST(LinearGuess, ADriverIsInTheModelOnlyWhereItIsNeeded) {
   EXPECT_EQ(lower.gain[1], 0.0);
 }
 
+/// y' = 0.55 u_0 − (8.3e-5 + 5.6e-4 u_1) (y − 410): slow, and no linear model fits it well. Over windows of two swings a second order
+/// without any input follows it best, by its initial values.
+TEST(LinearGuess, AnInputOfASlowMotionThatNoLinearModelFitsIsInTheModel) {
+  GuessData data;
+  data.drivers.resize(2);
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal;
+  double y = 600.0, in = 0.0, open = 0.0;
+  for (int k = 0, next_in = 0, next_open = 0; k < 2000; ++k) {
+    if (k == next_in) in = 0.3 * static_cast<double>(random() % 3), next_in += 20 + static_cast<int>(random() % 70);
+    if (k == next_open) open = std::vector{0.0, 0.0, 0.2, 0.5, 1.0}[random() % 5], next_open += 15 + static_cast<int>(random() % 65);
+    data.t.push_back(60.0 * k);
+    data.y.push_back(y + 5.0 * normal(random));
+    data.drivers[0].values.push_back(in);
+    data.drivers[1].values.push_back(open);
+    for (int i = 0; i < 60; ++i) y += 0.55 * in - (8.3e-5 + 5.6e-4 * open) * (y - 410.0);
+  }
+  const LinearGuess guess = guess_linear(data);
+  EXPECT_EQ(guess.order, 1) << guess.why;
+  EXPECT_FALSE(guess.integrates);
+  EXPECT_GT(guess.gain[0], 500.0);
+  EXPECT_LT(guess.gain[1], -500.0);
+}
+
 /// An input that moves nothing, unless the user says that it acts.
 TEST(LinearGuess, AnInputThatTheUserNamesIsInTheModel) {
   GuessData data = first_order(0.5, 0.01);

@@ -53,12 +53,21 @@ struct Found {
 /// Fits of one target (an output, or its measured rate) over poles on a grid.
 class WindowSearch {
  public:
-  WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers);
+  /// `lengthened`: windows so many times as long as two swings, at most a quarter of the record.
+  WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers, int lengthened = 1);
 
   [[nodiscard]] bool possible() const { return record_.windows.size() > 1 && !target_.constant(); }
   /// The best model of that order; `pulled`: with a pull back to rest.
   [[nodiscard]] Found best(int order, bool pulled) const;
   [[nodiscard]] double excess(double mean_square) const { return std::max(mean_square - noise_, least_excess * noise_) + 1e-12; }
+  /// Whether what drives the model explains the motion, rather than the initial states of its windows: without drivers its held-out error
+  /// would be as much higher as it must be for an input to be in a model (guess_linear()).
+  [[nodiscard]] bool needs_drivers(const Found& found) const;
+  /// The same with the inputs that `longer`, over longer windows, has in its model of that kind; not beside another output that drives it:
+  /// over longer windows inputs make up for the noise of that one.
+  [[nodiscard]] Found with_inputs_of(const WindowSearch& longer, Found found) const;
+  [[nodiscard]] std::size_t windows() const { return record_.windows.size(); }
+  [[nodiscard]] int lengthened() const { return lengthened_; }
   /// Coefficients in the units given: of the drivers, then the constant.
   [[nodiscard]] std::vector<double> coefficients(const Found& found) const;
 
@@ -66,6 +75,7 @@ class WindowSearch {
   using Fits = std::vector<FittedAndHeldOut>;
   [[nodiscard]] Fits on_grid(int order, bool pulled) const;
   [[nodiscard]] Found best_of(const Fits& fits, const std::vector<Eigen::Index>& terms) const;
+  [[nodiscard]] bool lower(bool of_output, double mean_square, double without) const;
   void add_drivers(const Fits& fits, bool outputs, Found& found) const;
   void drop_drivers(const Fits& fits, Found& found) const;
   void refine(Found& found) const;
@@ -74,12 +84,14 @@ class WindowSearch {
   std::vector<GuessDriver> drivers_;
   WindowedRecord record_;
   MeanAndSigma target_;
+  int lengthened_ = 1;
+  std::size_t length_ = 0;  ///< of a window, in samples
   std::vector<MeanAndSigma> spreads_;
   double noise_ = 0.0;
 };
 
-WindowSearch::WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers)
-    : drivers_(std::move(drivers)), target_(mean_and_sigma(y)) {
+WindowSearch::WindowSearch(const std::vector<double>& t, const std::vector<double>& y, std::vector<GuessDriver> drivers, int lengthened)
+    : drivers_(std::move(drivers)), target_(mean_and_sigma(y)), lengthened_(lengthened) {
   constexpr std::size_t longest = 4000;
   if (target_.constant() || y.size() < 3) return;
   const std::size_t together = window_length(standard(y, target_)) / longest + 1;
@@ -96,7 +108,8 @@ WindowSearch::WindowSearch(const std::vector<double>& t, const std::vector<doubl
   std::vector<double> steps;
   for (std::size_t k = 1; k < record_.t.size(); ++k) steps.push_back(record_.t[k] - record_.t[k - 1]);
   record_.step = median(steps);
-  record_.windows = windows_of(record_.t, record_.step, window_length(record_.y));
+  length_ = static_cast<std::size_t>(lengthened) * window_length(record_.y);
+  record_.windows = windows_of(record_.t, record_.step, length_);
   const double sigma = measurement_noise(record_.y);
   noise_ = std::isfinite(sigma) ? sigma * sigma : 0.0;
 }
@@ -108,7 +121,7 @@ std::vector<double> spaced(double from, double to, int count) {
 }
 
 WindowSearch::Fits WindowSearch::on_grid(int order, bool pulled) const {
-  const double window = record_.step * static_cast<double>(window_length(record_.y));
+  const double window = record_.step * static_cast<double>(length_);
   const std::vector<double> rates = spaced(0.05 / window, 1.5 / record_.step, 28);
   Fits out;
   if (order == 1) {
@@ -123,7 +136,7 @@ WindowSearch::Fits WindowSearch::on_grid(int order, bool pulled) const {
     for (const double rate : rates) out.push_back(squares_of(record_, {2, 0.0, rate}));
     return out;
   }
-  const double swing = 4.0 * std::numbers::pi / window;  // two swings are a window
+  const double swing = 4.0 * std::numbers::pi / (record_.step * static_cast<double>(window_length(record_.y)));
   for (const double omega : spaced(0.25 * swing, std::min(8.0 * swing, 1.0 / record_.step), 15)) {
     for (const double zeta : {0.01, 0.05, 0.15, 0.35, 0.7, 1.1, 2.0, 4.0})
       out.push_back(squares_of(record_, {2, omega * omega, 2.0 * zeta * omega}));
@@ -131,23 +144,39 @@ WindowSearch::Fits WindowSearch::on_grid(int order, bool pulled) const {
   return out;
 }
 
-/// The poles by the windows fitted, the error by those held out.
-Found WindowSearch::best_of(const Fits& fits, const std::vector<Eigen::Index>& terms) const {
-  Found out{terms, {}, 0.0};
-  double least = HUGE_VAL;
-  for (const FittedAndHeldOut& fit : fits) {
-    const Eigen::VectorXd solved = fit.fitted.solve(terms);
-    const double own = fit.fitted.mean_square(solved);
-    if (!(own < least)) continue;
-    least = own;
-    out.poles = fit.poles;
-    out.mean_square = fit.held_out.mean_square(solved);
+/// Poles with the least mean square, and their mean square elsewhere.
+struct Tried {
+  double least = HUGE_VAL, elsewhere = 0.0;
+  Poles poles;
+
+  void take(const Poles& tried, const SquaresForm& fitted, const SquaresForm& held_out, const std::vector<Eigen::Index>& terms) {
+    const Eigen::VectorXd solved = fitted.solve(terms);
+    const double own = fitted.mean_square(solved);
+    if (!(own < least)) return;
+    *this = {own, held_out.mean_square(solved), tried};
   }
-  return out;
+};
+
+/// The poles by all windows; the error over either half of them with what the other half gives, poles included.
+Found WindowSearch::best_of(const Fits& fits, const std::vector<Eigen::Index>& terms) const {
+  Tried one, other, all;
+  for (const FittedAndHeldOut& fit : fits) {
+    one.take(fit.poles, fit.fitted, fit.held_out, terms);
+    other.take(fit.poles, fit.held_out, fit.fitted, terms);
+    SquaresForm both = fit.fitted;
+    both += fit.held_out;
+    all.take(fit.poles, both, both, terms);
+  }
+  return {terms, all.poles, 0.5 * (one.elsewhere + other.elsewhere)};
+}
+
+/// Enough for a driver to be in the model.
+bool WindowSearch::lower(bool of_output, double mean_square, double without) const {
+  constexpr double enough = 0.8, enough_of_output = 0.5;
+  return excess(mean_square) < (of_output ? enough_of_output : enough) * excess(without);
 }
 
 void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) const {
-  constexpr double enough = 0.8, enough_of_output = 0.5;
   for (;;) {
     std::optional<Found> best;
     for (std::size_t i = 0; i < drivers_.size(); ++i) {
@@ -161,14 +190,13 @@ void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) con
     }
     if (!best) return;
     const bool first = !outputs && found.terms.size() == 1;
-    if (!first && !(excess(best->mean_square) < (outputs ? enough_of_output : enough) * excess(found.mean_square))) return;
+    if (!first && !lower(outputs, best->mean_square, found.mean_square)) return;
     found = *best;
   }
 }
 
 /// What is not needed any more once another driver is there.
 void WindowSearch::drop_drivers(const Fits& fits, Found& found) const {
-  constexpr double enough = 0.8, enough_of_output = 0.5;
   for (std::size_t i = 1; i < found.terms.size() && found.terms.size() > 2;) {
     if (drivers_[found.terms[i]].named) {
       ++i;
@@ -177,8 +205,7 @@ void WindowSearch::drop_drivers(const Fits& fits, Found& found) const {
     std::vector<Eigen::Index> terms = found.terms;
     terms.erase(terms.begin() + i);
     const Found without = best_of(fits, terms);
-    const bool output = drivers_[found.terms[i]].output;
-    if (excess(found.mean_square) < (output ? enough_of_output : enough) * excess(without.mean_square)) {
+    if (lower(drivers_[found.terms[i]].output, found.mean_square, without.mean_square)) {
       ++i;
     } else {
       found = without;
@@ -210,6 +237,25 @@ Found WindowSearch::best(int order, bool pulled) const {
   add_drivers(fits, false, found);
   add_drivers(fits, true, found);
   drop_drivers(fits, found);
+  refine(found);
+  return found;
+}
+
+bool WindowSearch::needs_drivers(const Found& found) const {
+  const Fits fits = on_grid(found.poles.order, found.poles.pulled());
+  return lower(false, found.mean_square, best_of(fits, {std::ssize(drivers_)}).mean_square);
+}
+
+Found WindowSearch::with_inputs_of(const WindowSearch& longer, Found found) const {
+  const std::size_t before = found.terms.size();
+  const auto is_output = [&](Eigen::Index term) { return term < std::ssize(drivers_) && drivers_[term].output; };
+  if (std::any_of(found.terms.begin(), found.terms.end(), is_output)) return found;
+  for (const Eigen::Index term : longer.best(found.poles.order, found.poles.pulled()).terms) {
+    const bool known = std::find(found.terms.begin(), found.terms.end(), term) != found.terms.end();
+    if (!known && !is_output(term)) found.terms.push_back(term);
+  }
+  if (found.terms.size() == before) return found;
+  found = best_of(on_grid(found.poles.order, found.poles.pulled()), found.terms);
   refine(found);
   return found;
 }
@@ -340,10 +386,10 @@ LinearGuess second_order(const GuessData& data, const WindowSearch& search, cons
 /// A first order whose rest drifts in time, if it leaves no more than `excess`: a second order without a pull back to rest follows a drift,
 /// too, with gains that mean nothing, and a first order takes it for a time constant longer than the record. The model is the one without
 /// the drift, which is for the search to name. `fits`: what is said of it with the drift.
-std::optional<LinearGuess> drifting_first_order(const GuessData& data, double excess, const char* fits) {
+std::optional<LinearGuess> drifting_first_order(const GuessData& data, int lengthened, double excess, const char* fits) {
   std::vector<GuessDriver> drivers = data.drivers;
   drivers.push_back({data.t, true, false});
-  const WindowSearch search(data.t, data.y, drivers);
+  const WindowSearch search(data.t, data.y, drivers, lengthened);
   const Found found = search.best(1, true);
   if (!(found.poles.damping > 0.0) || search.excess(found.mean_square) > excess) return std::nullopt;
   LinearGuess out = first_order(search, found, 0.0);
@@ -354,26 +400,79 @@ std::optional<LinearGuess> drifting_first_order(const GuessData& data, double ex
   return out;
 }
 
+/// The best models of either order, and which of the two it is to be.
+struct Choice {
+  Found first, second;
+  double lower = 0.0;  ///< the error of the second order, below that of the first [%]
+  bool oscillates = false;
+
+  explicit Choice(const WindowSearch& search) : first(simplest(search, 1)), second(simplest(search, 2)) {
+    constexpr double most_damped = 0.9;  // damping ratio
+    const bool swings = second.poles.damping < 2.0 * most_damped * std::sqrt(second.poles.stiffness) || second.poles.stiffness == 0.0;
+    lower = percent_lower(search, second, first);
+    oscillates = swings && search.excess(second.mean_square) < half * search.excess(first.mean_square);
+  }
+  [[nodiscard]] const Found& found() const { return oscillates ? second : first; }
+
+  static constexpr double half = 0.5;  ///< of the mean square
+};
+
+bool has_inputs(const GuessData& data) {
+  return std::any_of(data.drivers.begin(), data.drivers.end(), [](const GuessDriver& d) { return !d.output; });
+}
+
+struct Searched {
+  WindowSearch search;
+  Choice choice;
+
+  /// Inputs whose effect is slow are seen over longer windows alone.
+  void take_slow_inputs(const GuessData& data) {
+    constexpr int further = 2;
+    const WindowSearch longer(data.t, data.y, data.drivers, further * search.lengthened());
+    if (longer.windows() < least_windows) return;
+    Found& found = choice.oscillates ? choice.second : choice.first;
+    found = search.with_inputs_of(longer, found);
+  }
+
+  static constexpr std::size_t least_windows = 4;
+};
+
+/// Over longer windows where, over those of two swings, their own initial states explain the motion as well as what drives it; over the
+/// same ones if the drivers explain no more over longer ones.
+std::optional<Searched> search_of(const GuessData& data) {
+  const WindowSearch search(data.t, data.y, data.drivers);
+  if (!search.possible()) return std::nullopt;
+  Searched out{search, Choice(search)};
+  if (!has_inputs(data)) return out;
+  for (int lengthened = 2; !out.search.needs_drivers(out.choice.found()); lengthened *= 2) {
+    const WindowSearch longer(data.t, data.y, data.drivers, lengthened);
+    if (longer.windows() < Searched::least_windows) {
+      out = {search, Choice(search)};
+      break;
+    }
+    out = {longer, Choice(longer)};
+  }
+  out.take_slow_inputs(data);
+  return out;
+}
+
 }  // namespace
 
 LinearGuess guess_linear(const GuessData& data) {
   if (!data.rate.empty()) {
     if (const auto known = with_measured_rate(data)) return *known;
   }
-  const WindowSearch search(data.t, data.y, data.drivers);
-  if (!search.possible()) return none_found(data);
-  const Found first = simplest(search, 1), second = simplest(search, 2);
-  const double lower = percent_lower(search, second, first);
-  constexpr double half = 0.5, most_damped = 0.9;  // of the mean square; damping ratio
-  const bool swings = second.poles.damping < 2.0 * most_damped * std::sqrt(second.poles.stiffness) || second.poles.stiffness == 0.0;
-  const bool oscillates = swings && search.excess(second.mean_square) < half * search.excess(first.mean_square);
-  LinearGuess out = oscillates ? second_order(data, search, second, lower) : first_order(search, first, lower);
-  const bool driven = std::any_of(data.drivers.begin(), data.drivers.end(), [](const GuessDriver& d) { return !d.output; });
-  if (driven && (!oscillates || second.poles.stiffness == 0.0)) {
-    const double least = oscillates ? search.excess(second.mean_square) : half * search.excess(first.mean_square);
+  const std::optional<Searched> searched = search_of(data);
+  if (!searched) return none_found(data);
+  const auto& [search, choice] = *searched;
+  LinearGuess out =
+      choice.oscillates ? second_order(data, search, choice.second, choice.lower) : first_order(search, choice.first, choice.lower);
+  if (has_inputs(data) && (!choice.oscillates || choice.second.poles.stiffness == 0.0)) {
+    const double least =
+        choice.oscillates ? search.excess(choice.second.mean_square) : Choice::half * search.excess(choice.first.mean_square);
     const char* fits =
-        oscillates ? "it fits no worse than a second order without a pull back to a rest" : "its held-out error is less than half";
-    if (const auto drifting = drifting_first_order(data, least, fits)) out = *drifting;
+        choice.oscillates ? "it fits no worse than a second order without a pull back to a rest" : "its held-out error is less than half";
+    if (const auto drifting = drifting_first_order(data, search.lengthened(), least, fits)) out = *drifting;
   }
   const bool numbers = std::isfinite(out.rest + out.tau + out.damping + out.stiffness) &&
                        std::all_of(out.gain.begin(), out.gain.end(), [](double g) { return std::isfinite(g); });

@@ -15,6 +15,9 @@ namespace misfit {
 struct Poles {
   int order = 1;
   double stiffness = 0.0, damping = 0.0;  ///< [1/s^2], [1/s]
+
+  /// Back to a rest; what is not integrates.
+  [[nodiscard]] bool pulled() const { return (order == 1 ? damping : stiffness) != 0.0; }
 };
 
 /// A record ready to be solved: y and drivers of mean 0 and sigma 1; drivers known everywhere, y NaN where it is missing.
