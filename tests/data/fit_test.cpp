@@ -83,6 +83,17 @@ TEST(Fit, WhatIsNotKnownIsNullAndNeverNan) {
   EXPECT_EQ(read_file(folder.path() / "curves.csv").find("nan"), std::string::npos);
 }
 
+TEST(Fit, ADoubtIsAWarningToo) {
+  const TemporaryFolder folder;
+  Fit fit = example();
+  fit.warnings.clear();
+  EXPECT_FALSE(fit.doubts.has_value());
+  fit.add_doubt("tau ends at its bound, 0.01 s", ": the best value may lie beyond");
+  EXPECT_EQ(fit.warnings, std::vector<std::string>{"tau ends at its bound, 0.01 s: the best value may lie beyond"});
+  write_fit(folder.path(), fit);
+  EXPECT_EQ(read_fit(folder.path()).doubts, std::vector<std::string>{"tau ends at its bound, 0.01 s"});
+}
+
 TEST(Fit, CurvesStandInOneFileInDegrees) {
   const TemporaryFolder folder;
   write_fit(folder.path(), example());

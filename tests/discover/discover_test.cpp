@@ -10,6 +10,7 @@
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/screen.h"
 #include "misfit/discover/verdict.h"
+#include "misfit/inference/beyond_record.h"
 #include "tests/fit/flight.h"
 
 namespace misfit {
@@ -81,15 +82,16 @@ TEST(Verdict, AStrengthAtItsBoundIsNamedAndOneAtZeroIsNot) {
 TEST(Verdict, ALagLongerThanHalfOfTheRecordingIsNone) {
   Model model = assemble(parachute(true, {effect("lag")}), registry());
   set(model, "tau", 62.0);
-  const auto found = outlasts_recording(model, 40.0);
+  const auto found = outlasts_recording(model, model.effects.back(), 40.0);
   ASSERT_TRUE(found.has_value());
-  EXPECT_EQ(*found, "its time tau = 62 s is longer than half of the recording, 40 s");
-  EXPECT_FALSE(outlasts_recording(model, 200.0).has_value());
+  EXPECT_EQ(*found, "tau = 62 s is longer than half of the recording, 40 s");
+  EXPECT_FALSE(outlasts_recording(model, model.effects.back(), 200.0).has_value());
   ModelRequest slow = cart({effect("periodic_forcing")});
   slow.parameters["frequency"].value = 0.02;
-  EXPECT_THAT(outlasts_recording(assemble(slow, registry()), 40.0).value_or(""), testing::HasSubstr("less than one period"));
-  EXPECT_FALSE(outlasts_recording(assemble(slow, registry()), 60.0).has_value());
-  EXPECT_FALSE(outlasts_recording(assemble(parachute(true, {effect("drift")}), registry()), 40.0).has_value()) << "drift remembers nothing";
+  const Model forced = assemble(slow, registry()), drifting = assemble(parachute(true, {effect("drift")}), registry());
+  EXPECT_THAT(outlasts_recording(forced, forced.effects.back(), 40.0).value_or(""), testing::HasSubstr("less than one period"));
+  EXPECT_FALSE(outlasts_recording(forced, forced.effects.back(), 60.0).has_value());
+  EXPECT_FALSE(outlasts_recording(drifting, drifting.effects.back(), 40.0).has_value()) << "drift remembers nothing";
 }
 
 Signals position_of_cart(const std::function<double(double)>& position) {
@@ -402,8 +404,8 @@ TEST(Verdict, AMemoryWhoseTimeIsBelowTwoSigmasIsNotDetermined) {
   const std::size_t unknowns = late.free_parameters().size();
   set(late, "delay", 0.16);
   EXPECT_TRUE(undetermined_time(late, Eigen::MatrixXd::Identity(unknowns, unknowns)).has_value()) << "a delay has no states, and remembers";
-  EXPECT_TRUE(outlasts_recording(late, 0.3).has_value());
-  EXPECT_FALSE(outlasts_recording(late, 0.4).has_value());
+  EXPECT_TRUE(outlasts_recording(late, late.effects.back(), 0.3).has_value());
+  EXPECT_FALSE(outlasts_recording(late, late.effects.back(), 0.4).has_value());
   Model forced = assemble(cart({effect("periodic_forcing")}), registry());
   const std::size_t size = forced.free_parameters().size();
   EXPECT_FALSE(undetermined_time(forced, 1e6 * Eigen::MatrixXd::Identity(size, size)).has_value()) << "it remembers nothing";

@@ -55,6 +55,26 @@ TEST(RegularisedPriors, GiveWayWhereATypicalSizeIsFarTooSmall) {
   EXPECT_DOUBLE_EQ(precision(0.0), 1e-6) << "of which nothing is measured";
 }
 
+/// Then the covariance is that of the prior, and no sigma of an estimate.
+TEST(RegularisedPriors, WhatIsLeftToThemIsNamed) {
+  const auto registry = testing_room::registry_with(testing_room::warming("tau", "2e4"));
+  Model model = assemble(testing_room::request_of("text"), *registry);
+  for (Parameter& p : model.parameters) p.scale = 0.1;
+  const std::vector<int> free = model.free_parameters();
+  ASSERT_EQ(free.size(), 2u);
+  const auto left = [&](double sigma_of_data) {  // of the first; the second is known
+    const Eigen::Vector2d information(1.0 / (sigma_of_data * sigma_of_data), 1.0);
+    Eigen::Matrix2d precision = information.asDiagonal();
+    precision.diagonal() += regularised_priors(model, information).precision;
+    return left_to_wide_priors(model, information, precision.inverse());
+  };
+  EXPECT_EQ(left(1e9), std::vector<int>{free[0]}) << "1e10 typical sizes";
+  EXPECT_TRUE(left(1e7).empty()) << "wide of what the measurements know";
+  EXPECT_TRUE(left(0.01).empty());
+  model.parameters[static_cast<std::size_t>(free[0])].prior_sigma = 1.0;
+  EXPECT_TRUE(left(1e9).empty()) << "a prior that the study states";
+}
+
 /// Worked by hand. The data know the difference of two parameters and nothing of their sum: from (3, 1) the difference of 2 is kept, the
 /// sum of 4 is not, so the prior is about (1, -1). Where they know both, it is about (3, 1) itself.
 TEST(RegularisedPriors, AreAboutThePointWhereSomethingIsKnownAndAboutZeroElsewhere) {

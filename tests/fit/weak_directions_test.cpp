@@ -160,6 +160,7 @@ TEST(WeakDirections, AParameterAtItsBoundIsNamedWithItsBound) {
   Fit fit;
   warn_of_collinearity(model, separate(model), fit);
   EXPECT_THAT(fit.warnings, testing::ElementsAre(HasSubstr("m_a ends at its bound, 0.294 kg")));
+  EXPECT_EQ(fit.doubts, std::vector<std::string>{"m_a ends at its bound, 0.294 kg"});
 }
 
 TEST(WeakDirections, AShapeOfEitherSignIsJudgedByItsTypicalSizeNotByItsNearnessToZero) {

@@ -290,6 +290,27 @@ TEST(Verdict, AnEstimateThatLaterRungsHaveMovedIsGivenOfBothModels) {
                                    "time_offset: clock_offset = 0.0110 ± 0.0020 s"));
 }
 
+/// Named all the same, but not as what was missing.
+TEST(Verdict, ALastModelWhoseParametersAreDoubtfulIsNoProofOfWhatWasAdded) {
+  Case c;
+  c.add_effect();
+  c.discovery = searched({}, SearchOutcome::none_missing, "");
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("coulomb_friction was missing"));
+  c.ladder->rungs.back().doubts = {"input_tau is not determined by these data", "damping ends at its bound, 0.047 1/s"};
+  const Verdict v = c.verdict();
+  EXPECT_THAT(v.sentence, testing::StartsWith("coulomb_friction describes what was missing: with it"));
+  EXPECT_THAT(v.sentence,
+              HasSubstr("; in the last model input_tau is not determined by these data and damping ends at its bound, 0.047 1/s, "
+                        "so that what was added may stand for something else."));
+  EXPECT_EQ(v.doubts.size(), 2U);
+}
+
+TEST(Verdict, DoubtsOfTheFittedModelAreSaidWithItsParameters) {
+  Case c;
+  c.fits.front().add_doubt("tau ends at its bound, 0.01 s");
+  EXPECT_THAT(c.verdict().doubts, testing::ElementsAre("tau ends at its bound, 0.01 s"));
+}
+
 /// By hand, say: its drop is what chance gives.
 TEST(Verdict, AnAddedEffectThatExplainsNothingIsNotCalledMissing) {
   Case c;

@@ -103,7 +103,8 @@ void fields(Archive& json, MaybeConst<Fit> auto& fit) {
   std::map<std::string, StoredParameter> parameters = stored_parameters(fit);
   std::optional<double> plain_sigma = plain_sigma_of(fit, trim_key, kDegree);
   json("method", fit.method), json("status", NameOf(fit.status, fit_status_names)), json("message", fit.message);
-  json("warnings", fit.warnings), json("driven", fit.driven), json("coloured", fit.coloured), json("parameters", parameters);
+  json("warnings", fit.warnings), json.if_there("doubts", fit.doubts);
+  json("driven", fit.driven), json("coloured", fit.coloured), json("parameters", parameters);
   json("noise", fit.noise), json("force", fit.force), json("loglik", fit.loglik);
   json("validation_loglik", fit.validation_loglik);
   json("trim_deg", Formed(fit.trim, [&](auto& object, auto& trim) {
@@ -133,6 +134,12 @@ void fields(Archive& json, MaybeConst<RoughnessPaths> auto& paths) {
 std::string share_of_motion_in_words(double nrmse) {
   const double percent = 100.0 * nrmse, step = std::pow(10.0, std::floor(std::log10(percent)) - 1.0);
   return format_value(percent > 0.0 ? std::round(percent / step) * step : 0.0) + " % of the motion";
+}
+
+void Fit::add_doubt(const std::string& clause, const std::string& more) {
+  if (!doubts) doubts.emplace();
+  doubts->push_back(clause);
+  warnings.push_back(clause + more);
 }
 
 std::string to_string(FitStatus status) { return enum_name(fit_status_names, status); }

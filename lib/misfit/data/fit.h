@@ -74,8 +74,11 @@ struct ChannelPrediction {
 struct Fit {
   std::string method;  ///< EstimatorInfo::name
   FitStatus status = FitStatus::failed;
-  std::string message;                         ///< why it stopped, in words
-  std::vector<std::string> warnings;           ///< what a reader must know before believing it
+  std::string message;                ///< why it stopped, in words
+  std::vector<std::string> warnings;  ///< what a reader must know before believing it
+  /// Of these, in short, what makes its parameters doubtful: a clause of each that ends at a bound or is not determined. Missing in an
+  /// older file.
+  std::optional<std::vector<std::string>> doubts;
   std::map<std::string, Estimate> parameters;  ///< free parameters (curve coefficients as NAME[i]) and derived numbers, SI
   std::vector<std::string> names;              ///< order of `covariance`
   Eigen::MatrixXd covariance;
@@ -94,6 +97,8 @@ struct Fit {
   double seconds = 0.0;
   int linearisations = 0;
 
+  /// A warning that begins with `clause`, one of its doubts.
+  void add_doubt(const std::string& clause, const std::string& more = "");
   /// Has it a result, be it that the iterations stopped before the maximum?
   [[nodiscard]] bool usable() const { return status == FitStatus::converged || status == FitStatus::not_converged; }
   /// What it says of that to other methods; nullopt where it could not test it.

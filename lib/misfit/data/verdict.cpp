@@ -33,7 +33,8 @@ void fields(Archive& json, MaybeConst<ErrorChange> auto& e) {
 template <class Archive>
 void fields(Archive& json, MaybeConst<Verdict> auto& v) {
   json("verdict", NameOf(v.kind, verdict_names)), json("sentence", v.sentence), json("where", v.where);
-  json("errors", v.errors), json("added", v.added), json("parameters", v.parameters), json("trim", v.trim), json("next", v.next);
+  json("errors", v.errors), json("added", v.added), json("doubts", v.doubts), json("parameters", v.parameters), json("trim", v.trim),
+      json("next", v.next);
 }
 
 void write_verdict(const std::filesystem::path& path, const Verdict& verdict) { write_json(path, verdict); }

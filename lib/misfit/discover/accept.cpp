@@ -11,7 +11,9 @@
 #include "misfit/discover/pairs.h"
 #include "misfit/discover/unknown_form.h"
 #include "misfit/discover/verdict.h"
+#include "misfit/inference/beyond_record.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/memory.h"
 
 namespace misfit {
 namespace {
@@ -53,7 +55,8 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   e.alone_gains_nothing = false;
   if (!(c.p_value < context.options.p_accept)) return not_significant(e, context);
   if (!near_a_maximum(*e.refit)) return "its refit has not converged: " + e.refit->estimate.message;
-  const auto memory = outlasts_recording(e.refit->estimate.model, longest_recording(context.experiments));
+  const Model& refitted = e.refit->estimate.model;
+  const auto memory = outlasts_recording(refitted, refitted.effects.back(), longest_recording(context.experiments));
   const auto off_steps = off_whole_steps(e.refit->estimate.model, context.experiments);
   const auto no_edge = edge_not_visited(e.refit->estimate);
   e.degenerate = memory || off_steps || no_edge || !e.refit->partial.empty();
@@ -64,7 +67,7 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
     return *unknown;
   if (const auto time = undetermined_time(e.refit->estimate.model, e.refit->estimate.covariance)) return *time;
   if (const auto collinear = no_longer_determined(e.refit->estimate, context.estimate)) return *collinear;
-  if (memory) return *memory;
+  if (memory) return "its " + *memory;
   if (off_steps) return *off_steps;
   if (no_edge) return *no_edge;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);

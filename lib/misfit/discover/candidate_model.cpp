@@ -8,6 +8,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/discover/bindings.h"
 #include "misfit/model/does_not_suit.h"
+#include "misfit/model/memory.h"
 
 namespace misfit {
 namespace {
@@ -271,12 +272,6 @@ void add_not_tried(NotTried added, std::vector<NotTried>& list) {
 }
 
 }  // namespace
-
-bool reads_the_past(const EffectSpec& effect) {
-  return std::any_of(effect.quantities.begin(), effect.quantities.end(), [](const Role& role) { return role.late_by[0] != '\0'; });
-}
-
-bool has_memory(const EffectSpec& effect) { return !effect.states.empty() || reads_the_past(effect); }
 
 std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect) {
   std::vector<std::string> out;

@@ -31,11 +31,6 @@ struct CandidateModel {
   bool lags = false;            ///< it has own states with linear dynamics, or reads an input's past: a lag, a delay
 };
 
-/// A delay: it reads an input as it was before.
-[[nodiscard]] bool reads_the_past(const EffectSpec& effect);
-/// It depends on more than the present: by its own states, or a delay.
-[[nodiscard]] bool has_memory(const EffectSpec& effect);
-
 /// Stands for the time of the recording among indices of quantities, as in diagnose/features.h.
 inline constexpr int kTime = -1;
 

@@ -9,6 +9,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/memory.h"
 
 namespace misfit {
 

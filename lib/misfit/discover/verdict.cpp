@@ -11,6 +11,7 @@
 #include "misfit/discover/candidate_model.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/inference/states.h"
+#include "misfit/model/memory.h"
 
 namespace misfit {
 namespace {
@@ -173,23 +174,6 @@ std::optional<std::string> undetermined_time(const Model& model, const Eigen::Ma
   for (const auto& coefficient : effect.coefficients) {
     if (coefficient.parameter < 0 || model.parameters[coefficient.parameter].unit != "s") continue;
     if (const auto value = undetermined(model, covariance, coefficient.parameter)) return "its time is not determined: " + *value;
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> outlasts_recording(const Model& model, double seconds) {
-  const BoundEffect& effect = model.effects.back();
-  const EffectSpec& spec = effect.effect->spec();
-  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
-    if (effect.coefficients[c].parameter < 0) continue;
-    const Parameter& p = model.parameters[effect.coefficients[c].parameter];
-    const bool frequency = spec.coefficients[c].scan.is_frequency();
-    if (frequency && p.value * seconds < 1.0)
-      return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + " is less than one period in the recording, " +
-             in_display_unit(seconds, "s");
-    if (!has_memory(spec) || p.unit != "s" || p.value < 0.5 * seconds) continue;
-    return "its time " + p.name + " = " + in_display_unit(p.value, p.unit) + " is longer than half of the recording, " +
-           in_display_unit(seconds, "s");
   }
   return std::nullopt;
 }

@@ -39,11 +39,6 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// form. nullopt: none is, or `covariance` (of the free parameters) is not known.
 [[nodiscard]] std::optional<std::string> undetermined_time(const Model& model, const Eigen::MatrixXd& covariance);
 
-/// "its time constant tau = 62 s is longer than half of the recording, 40 s" where a time of the model's last effect, which remembers, is:
-/// on such a record a lag is a constant force and a stiffness. So where its frequency makes less than one period: a drift. nullopt: none
-/// is.
-[[nodiscard]] std::optional<std::string> outlasts_recording(const Model& model, double seconds);
-
 /// "its step = 0.77 V, but the measurements are 0.11 V (RMS) from multiples of it" where the model's last effect reads an output in whole
 /// steps (CoefficientSpec::measured_as is OfMeasurements::step) and the measurements that enter the fit are not in such steps, whatever the
 /// first of them is: further off than 0.05 of a step and twice their white noise (measurement_noise()), which may come after the rounding.

@@ -32,6 +32,18 @@ ColumnPriors regularised_priors(const Model& model, const Eigen::VectorXd& infor
   return out;
 }
 
+std::vector<int> left_to_wide_priors(const Model& model, const Eigen::VectorXd& information, const Eigen::MatrixXd& covariance) {
+  constexpr double mostly = 0.5;
+  const std::vector<int> free = model.free_parameters();
+  const ColumnPriors wide = regularised_priors(model, information);
+  std::vector<int> out;
+  for (Eigen::Index c = 0; c < std::min(std::ssize(free), covariance.rows()); ++c) {
+    const Parameter& p = model.parameters[free[c]];
+    if (!p.prior_sigma && p.curve < 0 && covariance(c, c) * wide.precision[c] > mostly) out.push_back(free[c]);
+  }
+  return out;
+}
+
 double log_prior(const Parameter& parameter) {
   return parameter.prior_sigma ? -0.5 * std::pow((parameter.value - parameter.prior_mean) / *parameter.prior_sigma, 2) : 0.0;
 }

@@ -31,6 +31,11 @@ struct ColumnPriors {
 /// of which the measurements know less than 1e9 typical sizes. Part of no objective.
 [[nodiscard]] ColumnPriors regularised_priors(const Model& model, const Eigen::VectorXd& information);
 
+/// Of the free parameters without a stated prior, those of which the very wide one of regularised_priors() knows more than the
+/// measurements, so that `covariance` (of the free parameters) says nothing of them. Curves aside. `information` as there.
+[[nodiscard]] std::vector<int> left_to_wide_priors(const Model& model, const Eigen::VectorXd& information,
+                                                   const Eigen::MatrixXd& covariance);
+
 /// log density of one parameter's prior at its value, constants left out; 0 if it has none.
 [[nodiscard]] double log_prior(const Parameter& parameter);
 

@@ -64,6 +64,7 @@ class VerdictBuilder {
     } else if (fit_ != nullptr) {
       out_.errors = errors_of(*fit_);
     }
+    add_doubts();
     add_trim();
   }
 
@@ -103,6 +104,19 @@ class VerdictBuilder {
     std::string out;
     for (const std::string& word : words_of_place(roles)) out += " --at " + shell_word(word);
     return out;
+  }
+
+  /// Of the last model, or of the study's own where nothing was added.
+  void add_doubts() {
+    const auto& doubts = effects_added_ ? in_.ladder->rungs.back().doubts : fit_ != nullptr ? fit_->doubts : std::nullopt;
+    if (doubts) out_.doubts = *doubts;
+  }
+  /// "in the last model tau ends at its bound, 0.01 s, and …"; empty: nothing is doubtful there.
+  [[nodiscard]] std::string doubts_in_words() const {
+    constexpr std::size_t most = 2;
+    if (out_.doubts.empty()) return "";
+    const std::vector<std::string> first(out_.doubts.begin(), out_.doubts.begin() + std::min(most, out_.doubts.size()));
+    return "in the last model " + join_words(first) + ", so that what was added may stand for something else";
   }
 
   /// The trim before and after what was added, with the 95 % interval of the last one and what the references say.
@@ -384,7 +398,8 @@ class VerdictBuilder {
     const auto part = [&](const std::vector<std::string>& names, const char* of_one, const char* of_several) {
       if (!names.empty()) parts.push_back(join_words(names) + (names.size() == 1 ? of_one : of_several));
     };
-    part(needed, " was missing", " were missing");
+    const bool doubtful = !out_.doubts.empty();
+    part(needed, doubtful ? " describes what was missing" : " was missing", doubtful ? " describe what was missing" : " were missing");
     part(a_part, " explains a part of what is missing", " explain a part of what is missing");
     part(untested, " was added, and no likelihood compares it with the model before",
          " were added, and no likelihood compares them with the models before");
@@ -396,6 +411,7 @@ class VerdictBuilder {
       parts.front() += fmt::format(": with {} {}", with, change);
     }
     parts.push_back(rest);
+    if (const std::string doubts = doubts_in_words(); !doubts.empty()) parts.push_back(doubts);
     say(kind, fmt::format("{}", fmt::join(parts, "; ")), next);
     const std::string& first = parts.front();
     out_.sentence.replace(0, 1, first, 0, 1);  // names of effects keep their small letters
@@ -418,6 +434,7 @@ Blocks blocks_of(const Verdict& v) {
   out.paragraph(v.where);
   std::vector<std::string> errors = v.added;
   if (!v.parameters.empty()) errors.push_back("parameters of the fitted model: " + v.parameters);
+  for (const std::string& doubt : v.doubts) errors.push_back("doubtful: " + doubt);
   for (const ErrorChange& e : v.errors) errors.push_back(e.what() + ": " + shown(e));
   if (v.trim) errors.push_back(v.trim->what() + ": " + shown(*v.trim));
   out.list({errors});

@@ -56,6 +56,7 @@ Rung rung_of(const Session& session, const FilterWork& work) {
   rung.note = std::move(free_runs.words);
   if (!rung.validation_rms.empty()) rung.validation_k_step = k_step_errors(*work.estimate, true).rms;
   rung.trim = work.fit.trim;
+  rung.doubts = work.fit.doubts;
   rung.estimates.emplace();
   for (const auto& [name, estimate] : work.fit.parameters) {
     if (!is_curve_coefficient(name)) rung.estimates->emplace(name, estimate);

@@ -17,6 +17,7 @@
 #include "misfit/fit/filter/noise_report.h"
 #include "misfit/fit/filter/settled.h"
 #include "misfit/fit/filter/slow_force.h"
+#include "misfit/inference/beyond_record.h"
 #include "misfit/inference/curve_freedom.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
@@ -277,11 +278,36 @@ void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
   describe_freedom(estimate.model, problem, estimate.penalties, 1.0, fit);
 }
 
-/// A search with the weak priors that keep it regular ends with such parameters where it began, or where chance took them.
+/// A search with the weak priors that keep it regular ends with such parameters where it began, or where chance took them. Their sigma
+/// would be that of those priors: there is none.
 void warn_without_effect(const FilterEstimate& estimate, Fit& fit) {
-  Eigen::VectorXd information = parameter_priors(estimate.model).padded(estimate.covariance.rows()).precision;
-  for (const auto& jacobian : estimate.jacobians) information += jacobian.J.colwise().squaredNorm().transpose();
-  if (const std::string idle = without_effect(estimate.model, information); !idle.empty()) fit.warnings.push_back(idle);
+  Eigen::VectorXd measured = Eigen::VectorXd::Zero(estimate.covariance.rows());
+  for (const auto& jacobian : estimate.jacobians) measured += jacobian.J.colwise().squaredNorm().transpose();
+  const Eigen::VectorXd stated = parameter_priors(estimate.model).padded(estimate.covariance.rows()).precision;
+  const std::string idle = without_effect(estimate.model, measured + stated);
+  if (!idle.empty()) fit.warnings.push_back(idle);
+  for (const int parameter : left_to_wide_priors(estimate.model, measured, fit.covariance)) {
+    const Parameter& p = estimate.model.parameters[parameter];
+    Estimate& known = fit.parameters.at(p.name);
+    known.sigma = 0.0;
+    known.interval.reset();
+    if (idle.empty())
+      fit.add_doubt(p.name + " is not determined by these data",
+                    ": beside " + in_display_unit(p.value, p.unit) + " any value serves as well");
+  }
+}
+
+/// [s] The longest of the recordings.
+double longest_of(const FilterEstimate& estimate) {
+  double longest = 0.0;
+  for (const FilterData& data : estimate.data) longest = std::max(longest, data.signals->t.back() - data.signals->t.front());
+  return longest;
+}
+
+void warn_beyond_recording(const FilterEstimate& estimate, Fit& fit) {
+  for (const BoundEffect& effect : estimate.model.effects) {
+    if (const auto words = outlasts_recording(estimate.model, effect, longest_of(estimate))) fit.add_doubt(*words);
+  }
 }
 
 /// Intervals of a short record, or that it is too short for any. What of the noise ended at its bound (a force or a coloured noise that is
@@ -317,6 +343,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
     warn_without_effect(estimate, fit);
   }
   warn_of_collinearity(estimate.model, fit.covariance, fit);
+  warn_beyond_recording(estimate, fit);
   add_noise(estimate, threads, fit);
   if (const std::string slow = fit.driven ? warning_of_slow_force(estimate) : ""; !slow.empty()) fit.warnings.push_back(slow);
   add_predictions(estimate, fit);
