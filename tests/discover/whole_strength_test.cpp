@@ -31,6 +31,31 @@ v = "gain*i - bend*i^3 - c*v + push"
 v = { unit = "m/s", noise = 1e-3 }
 )toml";
 
+/// What a current that is recorded, and in no equation, does is no lag of it.
+TEST(IdleInput, IsOneThatMovesNothingInTheRestOfTheModel) {
+  std::string idle = coil_text;
+  idle.replace(idle.find("1e6"), 3, "0");
+  idle.replace(idle.find("1e17"), 4, "0");
+  Signals s;
+  s.measured = {{"v", "m/s", {}, 0.0}};
+  s.inputs = {{"i", "A", {}, 0.0}};
+  for (int k = 0; k < 100; ++k) {
+    s.t.push_back(0.05 * k);
+    s.inputs[0].values.push_back(1e-6 * std::sin(s.t.back()));
+    s.measured[0].values.push_back(0.01 * std::cos(s.t.back()));
+  }
+  const auto found = [&](const std::string& text, const std::string& key) {
+    const auto systems = registry_with(text);
+    ModelRequest request = request_of("text", {effect(key, {{"input", "i"}, {"port", "push"}})});
+    for (auto& [name, parameter] : request.parameters) parameter.free = name == "c";
+    const std::vector<Signals> signals{s};
+    return idle_input(estimate_filter(assemble(request, *systems), {}, signals));
+  };
+  EXPECT_EQ(found(idle, "input_lag"), "i");
+  EXPECT_EQ(found(coil_text, "input_lag"), std::nullopt);
+  EXPECT_EQ(found(idle, "input_gain"), std::nullopt) << "no share of anything";
+}
+
 TEST(WholeStrength, OfASmallInputIsTheGainWithinItsRange) {
   const auto systems = registry_with(coil_text);
   std::mt19937_64 random(3);

@@ -11,6 +11,7 @@
 #include "misfit/discover/pairs.h"
 #include "misfit/discover/unknown_form.h"
 #include "misfit/discover/verdict.h"
+#include "misfit/discover/whole_strength.h"
 #include "misfit/inference/beyond_record.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/memory.h"
@@ -59,7 +60,9 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   const auto memory = outlasts_recording(refitted, refitted.effects.back(), longest_recording(context.experiments));
   const auto off_steps = off_whole_steps(e.refit->estimate.model, context.experiments);
   const auto no_edge = edge_not_visited(e.refit->estimate);
-  e.degenerate = memory || off_steps || no_edge || !e.refit->partial.empty();
+  const auto idle = idle_input(e.refit->estimate);
+  e.degenerate = memory || off_steps || no_edge || idle || !e.refit->partial.empty();
+  if (idle) return *idle + " acts nowhere in the model, so that nothing of what it does can be " + c.effect + ": input_gain comes first";
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
   if (const auto unknown =

@@ -60,11 +60,10 @@ class WindowSearch {
   /// The best model of that order; `pulled`: with a pull back to rest.
   [[nodiscard]] Found best(int order, bool pulled) const;
   [[nodiscard]] double excess(double mean_square) const { return std::max(mean_square - noise_, least_excess * noise_) + 1e-12; }
-  /// Whether what drives the model explains the motion, rather than the initial states of its windows: without drivers its held-out error
-  /// would be as much higher as it must be for an input to be in a model (guess_linear()).
+  /// Whether what drives the model explains the motion, rather than the initial states of its windows: with it the held-out error is
+  /// clearly lower (guess_linear()).
   [[nodiscard]] bool needs_drivers(const Found& found) const;
-  /// The same with the inputs that `longer`, over longer windows, has in its model of that kind; not beside another output that drives it:
-  /// over longer windows inputs make up for the noise of that one.
+  /// The same with the inputs that `longer`, over longer windows, has in its model of that kind; not beside another output that drives it.
   [[nodiscard]] Found with_inputs_of(const WindowSearch& longer, Found found) const;
   [[nodiscard]] std::size_t windows() const { return record_.windows.size(); }
   [[nodiscard]] int lengthened() const { return lengthened_; }
@@ -75,12 +74,14 @@ class WindowSearch {
   using Fits = std::vector<FittedAndHeldOut>;
   [[nodiscard]] Fits on_grid(int order, bool pulled) const;
   [[nodiscard]] Found best_of(const Fits& fits, const std::vector<Eigen::Index>& terms) const;
-  [[nodiscard]] bool lower(bool of_output, double mean_square, double without) const;
+  [[nodiscard]] bool is_output(Eigen::Index term) const;
+  [[nodiscard]] bool any_output(const std::vector<Eigen::Index>& terms) const;
+  [[nodiscard]] double most_with(Eigen::Index term, const std::vector<Eigen::Index>& others) const;
   void add_drivers(const Fits& fits, bool outputs, Found& found) const;
   void drop_drivers(const Fits& fits, Found& found) const;
   void refine(Found& found) const;
 
-  static constexpr double least_excess = 0.3;
+  static constexpr double least_excess = 0.3, clearly = 0.8;
   std::vector<GuessDriver> drivers_;
   WindowedRecord record_;
   MeanAndSigma target_;
@@ -170,10 +171,17 @@ Found WindowSearch::best_of(const Fits& fits, const std::vector<Eigen::Index>& t
   return {terms, all.poles, 0.5 * (one.elsewhere + other.elsewhere)};
 }
 
-/// Enough for a driver to be in the model.
-bool WindowSearch::lower(bool of_output, double mean_square, double without) const {
-  constexpr double enough = 0.8, enough_of_output = 0.5;
-  return excess(mean_square) < (of_output ? enough_of_output : enough) * excess(without);
+bool WindowSearch::is_output(Eigen::Index term) const { return term < std::ssize(drivers_) && drivers_[term].output; }
+
+bool WindowSearch::any_output(const std::vector<Eigen::Index>& terms) const {
+  return std::any_of(terms.begin(), terms.end(), [this](Eigen::Index term) { return is_output(term); });
+}
+
+/// By how much a driver that is in the model lowers the error at least. An input beside another output that drives the model makes up for
+/// the noise of that one.
+double WindowSearch::most_with(Eigen::Index term, const std::vector<Eigen::Index>& others) const {
+  if (is_output(term)) return 0.5;
+  return any_output(others) ? clearly : 0.95;
 }
 
 void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) const {
@@ -190,7 +198,7 @@ void WindowSearch::add_drivers(const Fits& fits, bool outputs, Found& found) con
     }
     if (!best) return;
     const bool first = !outputs && found.terms.size() == 1;
-    if (!first && !lower(outputs, best->mean_square, found.mean_square)) return;
+    if (!first && !(excess(best->mean_square) < most_with(best->terms.back(), found.terms) * excess(found.mean_square))) return;
     found = *best;
   }
 }
@@ -205,7 +213,7 @@ void WindowSearch::drop_drivers(const Fits& fits, Found& found) const {
     std::vector<Eigen::Index> terms = found.terms;
     terms.erase(terms.begin() + i);
     const Found without = best_of(fits, terms);
-    if (lower(drivers_[found.terms[i]].output, found.mean_square, without.mean_square)) {
+    if (excess(found.mean_square) < most_with(found.terms[i], terms) * excess(without.mean_square)) {
       ++i;
     } else {
       found = without;
@@ -243,13 +251,12 @@ Found WindowSearch::best(int order, bool pulled) const {
 
 bool WindowSearch::needs_drivers(const Found& found) const {
   const Fits fits = on_grid(found.poles.order, found.poles.pulled());
-  return lower(false, found.mean_square, best_of(fits, {std::ssize(drivers_)}).mean_square);
+  return excess(found.mean_square) < clearly * excess(best_of(fits, {std::ssize(drivers_)}).mean_square);
 }
 
 Found WindowSearch::with_inputs_of(const WindowSearch& longer, Found found) const {
   const std::size_t before = found.terms.size();
-  const auto is_output = [&](Eigen::Index term) { return term < std::ssize(drivers_) && drivers_[term].output; };
-  if (std::any_of(found.terms.begin(), found.terms.end(), is_output)) return found;
+  if (any_output(found.terms)) return found;
   for (const Eigen::Index term : longer.best(found.poles.order, found.poles.pulled()).terms) {
     const bool known = std::find(found.terms.begin(), found.terms.end(), term) != found.terms.end();
     if (!known && !is_output(term)) found.terms.push_back(term);

@@ -36,15 +36,16 @@ struct LinearGuess {
 
 /// Order, drivers and parameters by the data: models are fitted over every second window of about two swings, each with its own initial
 /// state (linear_windows.h), and compared over the windows between, and the other way round. A driver is in the model if the held-out error
-/// (mean square less the measurement noise, at least 0.3 of it) falls with it by 20 %, another output if it falls by half; of inputs the
-/// best one always is, and so are those that the user named; what is constant, but for rounding, never is. Where all drivers together lower
-/// it by less than 20 %, the initial states of the windows explain the motion, which says nothing of the drivers (a second order without a
-/// pull back to rest follows much by its two initial values alone): then over windows twice as long, and again, as long as four are left.
-/// An input that only windows twice as long need is in the model, too: its effect is slow. Order 2 is taken if the rate is measured, or if
-/// it halves the held-out error of order 1 and its damping ratio is below 0.9 (two time constants are one and a lag, which discovery
-/// names). Where order 1 with a drift in time halves that of order 1 without, and leaves no more than order 2 without a pull back, it is
-/// order 1, without the drift; a pull back to rest if the mean square is 0.5 % higher without. Where nothing can be fitted: order 1 with a
-/// tenth of the record as tau, and every input with the gain σ(y)/σ(u).
+/// (mean square less the measurement noise, at least 0.3 of it) falls with it by 5 %, beside another output by 20 %, another output if it
+/// falls by half; of inputs the best one always is, and so are those that the user named: a gain that is not needed is estimated as 0 and
+/// does little harm, a missing one makes other effects look like it; what is constant, but for rounding, never is. Where all drivers
+/// together lower it by less than 20 %, the initial states of the windows explain the motion, which says nothing of the drivers (a second
+/// order without a pull back to rest follows much by its two initial values alone): then over windows twice as long, and again, as long as
+/// four are left. An input that only windows twice as long need is in the model, too: its effect is slow. Order 2 is taken if the rate is
+/// measured, or if it halves the held-out error of order 1 and its damping ratio is below 0.9 (two time constants are one and a lag, which
+/// discovery names). Where order 1 with a drift in time halves that of order 1 without, and leaves no more than order 2 without a pull
+/// back, it is order 1, without the drift; a pull back to rest if the mean square is 0.5 % higher without. Where nothing can be fitted:
+/// order 1 with a tenth of the record as tau, and every input with the gain σ(y)/σ(u).
 [[nodiscard]] LinearGuess guess_linear(const GuessData& data);
 
 }  // namespace misfit

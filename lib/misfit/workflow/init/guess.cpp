@@ -189,7 +189,7 @@ void note_unneeded_inputs(GuessedModel& model) {
   }
   if (unneeded.empty()) return;
   model.remarks.push_back(
-      fmt::format("in no equation of the first model: {}; with it, the held-out error falls by less than 20 % "
+      fmt::format("in no equation of the first model: {}; with it, the held-out error hardly falls "
                   "(--input puts those that it names in the equations; misfit discover tests the others, as input_gain)",
                   fmt::join(unneeded, ", ")));
 }
