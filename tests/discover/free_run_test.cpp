@@ -35,14 +35,14 @@ TEST(FreeRun, IsNotLookedAtWhereTheRandomForceDoesNothing) {
     swing.measured[1].values.push_back(-0.5 * w * std::sin(w * swing.t.back()) + 1e-2 * normal(random));
   }
   const std::vector<Signals> recorded = {swing};
-  EXPECT_FALSE(free_run(estimate_of(recorded)));
+  EXPECT_FALSE(free_run(estimate_of(recorded), {recorded}));
 }
 
 TEST(FreeRun, ShowsWhatTheRandomForceTakesOver) {
   const std::vector<Signals> recorded = {
       record_of_cart({effect("periodic_forcing")}, {{"cosine", 0.4}, {"sine", 0.3}, {"frequency", 0.15}})};
   const FilterEstimate estimate = estimate_of(recorded);
-  const auto calm = free_run(estimate);
+  const auto calm = free_run(estimate, {recorded});
   ASSERT_TRUE(calm);
   EXPECT_LT(calm->noise.force, 0.05 * estimate.noise.force);
   EXPECT_GT(calm->noise.channels.front().white, 1.2 * estimate.noise.channels.front().white);

@@ -161,6 +161,12 @@ TEST(WeakDirections, AParameterAtItsBoundIsNamedWithItsBound) {
   warn_of_collinearity(model, separate(model), fit);
   EXPECT_THAT(fit.warnings, testing::ElementsAre(HasSubstr("m_a ends at its bound, 0.294 kg")));
   EXPECT_EQ(fit.doubts, std::vector<std::string>{"m_a ends at its bound, 0.294 kg"});
+  const Eigen::MatrixXd covariance = separate(model);
+  mass.lower = mass.value = 0.0;
+  Fit not_needed;
+  warn_of_collinearity(model, covariance, not_needed);
+  EXPECT_THAT(not_needed.warnings, testing::ElementsAre(HasSubstr("m_a ends at its bound, 0 kg")));
+  EXPECT_FALSE(not_needed.doubts.has_value());
 }
 
 TEST(WeakDirections, AShapeOfEitherSignIsJudgedByItsTypicalSizeNotByItsNearnessToZero) {

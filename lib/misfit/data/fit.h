@@ -76,8 +76,8 @@ struct Fit {
   FitStatus status = FitStatus::failed;
   std::string message;                ///< why it stopped, in words
   std::vector<std::string> warnings;  ///< what a reader must know before believing it
-  /// Of these, in short, what makes its parameters doubtful: a clause of each that ends at a bound or is not determined. Missing in an
-  /// older file.
+  /// Of these, in short, what makes the model doubtful: a clause of each parameter that ends at a bound other than 0, is not determined at
+  /// all, or is a time beyond the recording. Missing in an older file.
   std::optional<std::vector<std::string>> doubts;
   std::map<std::string, Estimate> parameters;  ///< free parameters (curve coefficients as NAME[i]) and derived numbers, SI
   std::vector<std::string> names;              ///< order of `covariance`

@@ -205,7 +205,7 @@ class Search {
   /// The forces that explain most of the free run, each at least a fifth of it, begun from there: down to the first that one step ahead has
   /// found already (under mpirun all of them, as in refit_the_best()).
   void refit_what_the_free_run_shows() {
-    calm_ = free_run(estimate_);
+    calm_ = free_run(estimate_, {experiments_, options_.threads});
     if (!calm_) return;
     calm_score_.emplace(*calm_);
     const ForceSensitivity force(*calm_);
@@ -243,7 +243,7 @@ class Search {
 
   /// What the free run alone nominated must explain there what it promised: else its refit went elsewhere, and is not counted.
   void require_of_free_run(RankedCandidate& e) {
-    const std::optional<FilterEstimate> after = free_run(e.refit->estimate);
+    const std::optional<FilterEstimate> after = free_run(e.refit->estimate, {experiments_, options_.threads});
     if (!after || is_explained(*calm_, *after)) return;  // none: nothing is left to the random force
     e.refit.reset();
     e.log_p = e.screening->log_p;

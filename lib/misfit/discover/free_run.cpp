@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/error.h"
+#include "misfit/core/watch.h"
+#include "misfit/discover/refit.h"
+
 namespace misfit {
 namespace {
 
@@ -43,32 +47,62 @@ Sizes sizes_of(const std::vector<FilterTrace>& traces, const std::vector<FilterD
   return out;
 }
 
+/// Fitted by a free run; where that cannot be, or gets lost, as it is.
+FilterEstimate settled(const FilterEstimate& estimate, const FreeRunWork& work) {
+  try {
+    return estimate_freely(estimate.model, estimate.penalties, work.experiments, options_like(estimate, work.threads));
+  } catch (const TimeLimitReached&) {
+    throw;
+  } catch (const RunError&) {
+    return estimate;
+  }
+}
+
+/// Mean logarithm of the white noise of the outputs.
+double log_noise(const FilterEstimate& estimate) {
+  double sum = 0.0;
+  for (const ChannelNoise& channel : estimate.noise.channels) sum += std::log(channel.white);
+  return sum / static_cast<double>(estimate.noise.channels.size());
+}
+
+/// `at` run freely, with as much white noise as that leaves; nullopt: it cannot be run so.
+std::optional<FilterEstimate> run_freely(FilterEstimate at, const FilterNoise& noise) {
+  constexpr int rounds = 3;  // of the size of the noise: initial states are weighed by it
+  at.noise = hardly_forced(noise, at.reference);
+  FilterRunner runner(at.forced, true);
+  runner.set_parameters(at.forced.model.values());
+  for (int round = 0; round < rounds; ++round) {
+    at.loglik = 0.0;
+    for (std::size_t e = 0; e < at.data.size(); ++e) {
+      if (!runner.run(at.data[e], at.noise, at.traces[e], {&at.jacobians[e]})) return std::nullopt;
+      at.loglik += at.traces[e].loglik;
+    }
+    const Sizes now = sizes_of(at.traces, at.data, at.noise.channels.size());
+    for (std::size_t o = 0; round + 1 < rounds && o < now.size.size(); ++o) {
+      if (now.ratio[o] > 0.0) at.noise.channels[o].white *= now.ratio[o];
+    }
+  }
+  at.objective = at.loglik + at.prior().log_density(at.model.theta());
+  return at;
+}
+
+bool shows_more(const FilterEstimate& calm, const FilterEstimate& one_step) {
+  constexpr double least = 1.2;
+  const Sizes before = sizes_of(one_step.traces, one_step.data, one_step.noise.channels.size());
+  const Sizes now = sizes_of(calm.traces, calm.data, calm.noise.channels.size());
+  bool larger = false;
+  for (std::size_t o = 0; o < now.size.size(); ++o) larger = larger || now.size[o] > least * before.size[o];
+  return larger;
+}
+
 }  // namespace
 
-std::optional<FilterEstimate> free_run(const FilterEstimate& estimate) {
-  constexpr double least = 1.2;
-  constexpr int rounds = 3;  // of the size of the noise: initial states are weighed by it
-  FilterEstimate out = estimate;
-  out.noise = hardly_forced(estimate.noise, estimate.reference);
-  const Sizes one_step = sizes_of(estimate.traces, estimate.data, out.noise.channels.size());
-  FilterRunner runner(out.forced, true);
-  runner.set_parameters(out.forced.model.values());
-  for (int round = 0; round < rounds; ++round) {
-    out.loglik = 0.0;
-    for (std::size_t e = 0; e < out.data.size(); ++e) {
-      if (!runner.run(out.data[e], out.noise, out.traces[e], {&out.jacobians[e]})) return std::nullopt;
-      out.loglik += out.traces[e].loglik;
-    }
-    const Sizes now = sizes_of(out.traces, out.data, out.noise.channels.size());
-    bool larger = false;
-    for (std::size_t o = 0; o < now.size.size(); ++o) {
-      larger = larger || now.size[o] > least * one_step.size[o];
-      if (round + 1 < rounds && now.ratio[o] > 0.0) out.noise.channels[o].white *= now.ratio[o];
-    }
-    if (!larger) return std::nullopt;
-  }
-  out.objective = out.loglik + out.prior().log_density(out.model.theta());
-  return out;
+std::optional<FilterEstimate> free_run(const FilterEstimate& estimate, const FreeRunWork& work) {
+  std::optional<FilterEstimate> out = run_freely(estimate, estimate.noise);
+  if (!out || !shows_more(*out, estimate)) return std::nullopt;
+  std::optional<FilterEstimate> fitted = run_freely(settled(*out, work), estimate.noise);
+  if (fitted && log_noise(*fitted) < log_noise(*out)) out = std::move(fitted);
+  return shows_more(*out, estimate) ? out : std::nullopt;
 }
 
 std::vector<const ScreeningResult*> forces_shown_by(const FilterEstimate& calm, const std::vector<ScreeningResult>& screened) {

@@ -54,11 +54,13 @@ void append(std::vector<UnknownCurve>& list, std::vector<UnknownCurve> more) {
 }
 
 /// The most significant, corrected for these tests, of those that are worth enough.
-std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double tests, const Added& added, const DiscoverOptions& options) {
+/// `linear`: its memory is; another rate of its own state is then another effect, else only the shape of its corners.
+std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double tests, bool linear, const Added& added,
+                                       const DiscoverOptions& options) {
   std::optional<UnknownCurve> worst;
   for (auto& curve : after) {
     curve.p_value = sidak(curve.p_value, tests);
-    const double share = curve.memory.empty() ? added.least_share : least_share_of_all;
+    const double share = curve.memory.empty() || !linear ? added.least_share : least_share_of_all;
     if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < share * added.drop) continue;
     if (!worst || curve.log_p < worst->log_p) worst = curve;
   }
@@ -81,7 +83,7 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
   append(after, unknown_surfaces(work, read));
   append(after, unknown_own_rates(work, added.effects));
   const auto tests = static_cast<double>(after.size() + left_out);
-  return worst_left(std::move(after), tests, added, options);
+  return worst_left(std::move(after), tests, candidate_model.lags, added, options);
 }
 
 }  // namespace misfit

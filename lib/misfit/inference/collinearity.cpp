@@ -142,11 +142,17 @@ void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance,
     if (p.prior_sigma && sigma > min_share_of_prior * *p.prior_sigma) {
       prior_only += (prior_only.empty() ? "" : ", ") + p.name;
     } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
-      fit.add_doubt(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
+      fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
     }
-    if (const std::optional<double> bound = bound_reached(p))
-      fit.add_doubt(p.name + " ends at its bound, " + in_display_unit(*bound, p.unit),
-                    ": the best value may lie beyond, and its sigma does not describe an interval there");
+    const std::optional<double> bound = bound_reached(p);
+    if (!bound) continue;
+    const std::string words = p.name + " ends at its bound, " + in_display_unit(*bound, p.unit);
+    const std::string what_it_means = ": the best value may lie beyond, and its sigma does not describe an interval there";
+    if (*bound == 0.0) {
+      fit.warnings.push_back(words + what_it_means);  // it is not needed: no doubt of the others
+    } else {
+      fit.add_doubt(words, what_it_means);
+    }
   }
   if (!prior_only.empty()) fit.facts["prior_only"] = "these data add no information to the prior of " + prior_only;
 }

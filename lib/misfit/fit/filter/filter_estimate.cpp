@@ -166,6 +166,18 @@ FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penaltie
   return estimate_filter({{start, std::move(penalties), {}}}, experiments, options);
 }
 
+FilterEstimate estimate_freely(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
+                               const FilterOptions& options) {
+  LikelihoodAscent at(start, std::move(penalties), experiments, options);
+  settle_freely(at);
+  FilterEstimate out = std::move(at.out);
+  out.model.set_theta(at.theta);
+  const std::vector<double> all = out.forced.model.values_at(at.theta);
+  for (std::size_t i = 0; i < all.size(); ++i) out.forced.model.parameters[i].value = all[i];
+  out.objective = at.objective;
+  return out;
+}
+
 bool follows_freely(const Model& model, const std::vector<Signals>& experiments) {
   LikelihoodAscent at(model, curve_penalties(model), experiments, {});
   return follows_freely(at);

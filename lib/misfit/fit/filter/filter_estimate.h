@@ -90,6 +90,12 @@ struct FilterEstimate {
 [[nodiscard]] FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                              const FilterOptions& options = {});
 
+/// The free parameters fitted by a free run with hardly any random force, its initial states estimated, as output error does: Gauss–Newton
+/// steps from those of `start`, the white noise as large as what is left, until that falls by less than 1 %. Without covariance. RunError:
+/// the model cannot be run so.
+[[nodiscard]] FilterEstimate estimate_freely(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
+                                             const FilterOptions& options);
+
 /// Has a free run of the model, its initial states estimated, residuals of less than half of the variance of every output?
 [[nodiscard]] bool follows_freely(const Model& model, const std::vector<Signals>& experiments);
 
