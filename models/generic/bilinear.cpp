@@ -4,12 +4,14 @@ namespace {
 
 using namespace misfit;
 
-/// An input sets how strongly a state acts: a valve in a drain, the current of an adjustable damper, wind over a warm wall. What the input
-/// does by itself, or the state, is in other effects (input_gain, viscous_friction, leak).
+/// An input sets how strongly a state acts: a valve in a drain, the current of an adjustable damper, wind over a warm wall. So may another
+/// state: pitch damping that grows with the angle of attack, a reaction faster where it is warm. What the input does by itself, or the
+/// state, is in other effects (input_gain, viscous_friction, leak).
 struct Bilinear {
   static constexpr const char* formula = "F = product input (factor - neutral)";
   static constexpr const char* symbols =
-      "product [port/input/factor], input as recorded [any], factor: a state or a rate [any], neutral: its value at which the input does "
+      "product [port/input/factor], input as recorded, or another state [any], factor: a state or a rate [any], neutral: its value at "
+      "which the input does "
       "nothing [factor], fixed: the input's own gain tells the rest";
   static constexpr const char* valid = "an action in proportion to the input and to the distance of the factor from its neutral value";
   static constexpr const char* size = "a damper of 100 N s/m per ampere at 0.5 A and 0.2 m/s: 10 N against the motion";

@@ -59,7 +59,9 @@ TEST(Bindings, LevelsOfOneUnitMayExchange) {
 /// A force elsewhere would not show in that output.
 TEST(Bindings, AnInputMultipliesStatesAndDifferencesOfLevels) {
   EXPECT_THAT(bindings("bilinear", "test_oscillator"), ElementsAre(Roles{}, Roles{{"factor", "v"}, {"input", "drive"}, {"port", "force"}},
-                                                                   Roles{{"factor", "x"}, {"input", "drive"}, {"port", "force"}}));
+                                                                   Roles{{"factor", "x"}, {"input", "drive"}, {"port", "force"}},
+                                                                   Roles{{"factor", "v"}, {"input", "x"}, {"port", "force"}}))
+      << "a product of two states once";
   EXPECT_THAT(bindings("bilinear_exchange", "test_tanks"),
               ElementsAre(Roles{}, Roles{{"input", "u"}, {"level", "x1"}, {"other", "x2"}, {"port", "dx1/dt"}},
                           Roles{{"input", "u"}, {"level", "x2"}, {"other", "x1"}, {"port", "dx2/dt"}}));

@@ -365,6 +365,37 @@ TEST(Verdict, WhatLeftALackOfFitIsAPartOfWhatIsMissingUntilNothingIsMissingAnyMo
   EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("coulomb_friction was missing"), Not(HasSubstr("a part"))));
 }
 
+TEST(Verdict, WhatWasChosenBesideAnEffectThatNoTestAcceptedIsNotCalledMissing) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs.back().remained = "an unknown curve dw/dt(w)";
+  Rung second = c.ladder->rungs.back();
+  second.id = 2, second.parent = 1, second.added = "bilinear";
+  second.remained.reset();
+  c.ladder->rungs.push_back(second);
+  c.discovery = searched({}, SearchOutcome::none_missing, "");
+  EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("coulomb_friction and bilinear describe what was missing: with them"),
+                                          HasSubstr("coulomb_friction was begun with though by itself it left a lack of fit")));
+}
+
+TEST(Verdict, HalfASamplingIntervalIsTheHoldOfAnInput) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs.back().added = "time_offset";
+  c.ladder->rungs.back().also = std::string(half_a_sample) + " (0.01 s), as …";
+  c.discovery = searched({}, SearchOutcome::none_missing, "");
+  EXPECT_THAT(c.verdict().sentence,
+              testing::StartsWith("time_offset is half a sampling interval late: it is the hold of an input that is wrong, not the model"));
+}
+
+TEST(Verdict, AShapeThatIsKeptIsSaidWithTheEstimates) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs.back().parameters = {{"friction", {5.0, 0.5, "V/s"}}};
+  c.ladder->rungs.back().kept = "width is fixed at 0.5 V";
+  EXPECT_THAT(c.verdict().added, testing::Contains("coulomb_friction: friction = 5.00 ± 0.50 V/s; width is fixed at 0.5 V"));
+}
+
 TEST(Verdict, WhatNoLikelihoodComparesIsNotCalledMissing) {
   Case c;
   c.add_effect();

@@ -25,6 +25,9 @@ inline constexpr std::array<const char*, 4> candidate_family_names = {"physics",
 [[nodiscard]] std::string to_string(CandidateFamily family);
 
 /// One thing that the model could lack.
+/// How Candidate::also begins where an effect is late by half a sampling interval: the hold of an input is wrong then, not the model.
+inline constexpr const char* half_a_sample = "that is half a sampling interval";
+
 struct Candidate {
   int rank = 0;        ///< 1 = first
   std::string effect;  ///< key, or "unknown:PORT(QUANTITY)"
@@ -36,7 +39,7 @@ struct Candidate {
   double predicted_drop = 0.0;
   std::optional<double> actual_drop;    ///< after refitting; missing: not refitted
   std::optional<double> held_out_gain;  ///< of the held-out log-likelihood
-  std::optional<std::string> also;      ///< other values that explain hardly less, in words
+  std::optional<std::string> also;      ///< other values that explain hardly less, or half_a_sample and what follows from it, in words
   /// What is still significant beside it, the only reason against it: "an unknown surface dv/dt(y, u)".
   std::optional<std::string> remaining;
   double p_value = 1.0;            ///< corrected for cells scanned and families

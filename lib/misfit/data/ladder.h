@@ -33,6 +33,7 @@ struct Rung {
   std::optional<int> new_parameters;                          ///< free ones that its parent does not have, coefficients of curves too
   std::optional<std::map<std::string, Estimate>> estimates;   ///< of all parameters of its model that are no coefficients of curves
   std::optional<std::vector<std::string>> doubts;             ///< Fit::doubts
+  std::optional<std::string> kept;                            ///< "width is fixed at 0.5 rad/s": of the added effect, in words
   std::optional<std::vector<std::string>> gained_too_little;  ///< curves of unknown form that were tried beside this model: effect_at()
   std::optional<std::map<std::string, std::string>> why_too_little;  ///< of each of those, with the number that decided: a clause
   std::optional<std::string> remained;                               ///< Candidate::remaining of what was added all the same

@@ -156,6 +156,25 @@ std::vector<Roles> times_factors(const std::vector<Roles>& places) {
   return out;
 }
 
+/// Each place with its factor once per state that may multiply it, each pair once: an input is what sets how strongly a state acts, and so
+/// may another state be (a rate constant and a concentration, a damping that depends on the position).
+std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
+  constexpr std::size_t most_states = 6;  // of larger systems there would be hundreds
+  std::vector<Roles> out;
+  if (!suggests_places(system) || system.states.size() > most_states) return out;
+  std::set<std::array<std::string, 3>> known;
+  for (const Roles& place : places) {
+    const std::string& factor = place.at("factor");
+    for (const StateSpec& state : system.states) {
+      const auto [first, second] = std::minmax(factor, state.name);
+      if (state.name == factor || !known.insert({place.at("port"), first, second}).second) continue;
+      out.push_back(place);
+      out.back()["input"] = state.name;
+    }
+  }
+  return out;
+}
+
 /// Each place with its output once per other output of the same unit; where the effect writes both, each pair of outputs once.
 std::vector<Roles> times_other_outputs(const std::vector<Roles>& places, const SystemSpec& system, bool writes_both) {
   std::vector<Roles> out;
@@ -316,11 +335,13 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   if (has_role(effect.quantities, "other")) places = times_other_levels(places, system, may_be_an_input(effect, "other"));
   if (has_role(effect.quantities, "factor")) places = times_factors(places);
   if (has_role(effect.quantities, "input")) {
+    const std::vector<Roles> products = has_role(effect.quantities, "factor") ? times_other_states(places, system) : std::vector<Roles>{};
     places = times(places, "input", system.roles.contains("input") ? names_of(system.inputs) : std::vector<std::string>{});
     if (has_role(effect.ports, "port")) {
       places = with_inputs_in_outputs(std::move(places), effect, system);
       if (is_of_its_input(effect) && is_in_outputs(system, system.roles.contains("input") ? system.roles.at("input") : "")) out.clear();
     }
+    places.insert(places.end(), products.begin(), products.end());
   }
   if (has_role(effect.ports, "output"))
     places = times(places, "output", suggests_places(system) ? names_of(system.outputs) : std::vector<std::string>{});

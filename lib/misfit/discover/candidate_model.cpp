@@ -24,27 +24,6 @@ bool driven_by_noise(const Effect& effect) {
   return false;
 }
 
-/// Has it own states whose drift is linear in them, as those of lags and delays, in its examples?
-bool has_linear_memory(const Effect& effect) {
-  const std::size_t states = effect.spec().states.size(), ports = effect.spec().ports.size();
-  for (const Example& example : effect.examples()) {
-    const auto drift = [&](std::size_t moved, double by) {
-      std::vector<double> z = example.states, out(ports + states, 0.0);
-      z[moved] += by;
-      effect.evaluate({example.quantities.data(), example.coefficients.data(), z.data(), example.constants.data(), example.t}, out.data());
-      return std::vector<double>(out.begin() + ports, out.end());
-    };
-    for (std::size_t z = 0; z < states; ++z) {
-      const std::vector<double> at = drift(z, 0.0), ahead = drift(z, 0.7), behind = drift(z, -0.7);
-      for (std::size_t i = 0; i < states; ++i) {
-        constexpr double rounding = 1e-9;
-        if (std::abs(ahead[i] - 2.0 * at[i] + behind[i]) > rounding * (std::abs(ahead[i]) + std::abs(behind[i]))) return false;
-      }
-    }
-  }
-  return states > 0;
-}
-
 /// Does any of its examples change with the time of the recording?
 bool reads_time(const Effect& effect) {
   const std::size_t size = effect.spec().ports.size() + effect.spec().states.size();
@@ -272,6 +251,26 @@ void add_not_tried(NotTried added, std::vector<NotTried>& list) {
 }
 
 }  // namespace
+
+bool has_linear_memory(const Effect& effect) {
+  const std::size_t states = effect.spec().states.size(), ports = effect.spec().ports.size();
+  for (const Example& example : effect.examples()) {
+    const auto drift = [&](std::size_t moved, double by) {
+      std::vector<double> z = example.states, out(ports + states, 0.0);
+      z[moved] += by;
+      effect.evaluate({example.quantities.data(), example.coefficients.data(), z.data(), example.constants.data(), example.t}, out.data());
+      return std::vector<double>(out.begin() + ports, out.end());
+    };
+    for (std::size_t z = 0; z < states; ++z) {
+      const std::vector<double> at = drift(z, 0.0), ahead = drift(z, 0.7), behind = drift(z, -0.7);
+      for (std::size_t i = 0; i < states; ++i) {
+        constexpr double rounding = 1e-9;
+        if (std::abs(ahead[i] - 2.0 * at[i] + behind[i]) > rounding * (std::abs(ahead[i]) + std::abs(behind[i]))) return false;
+      }
+    }
+  }
+  return states > 0;
+}
 
 std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect) {
   std::vector<std::string> out;

@@ -31,6 +31,9 @@ struct CandidateModel {
   bool lags = false;            ///< it has own states with linear dynamics, or reads an input's past: a lag, a delay
 };
 
+/// Has it own states whose drift is linear in them, as those of lags, in its examples?
+[[nodiscard]] bool has_linear_memory(const Effect& effect);
+
 /// Stands for the time of the recording among indices of quantities, as in diagnose/features.h.
 inline constexpr int kTime = -1;
 

@@ -170,7 +170,7 @@ std::optional<std::string> undetermined_strengths(const Model& model, const Eige
 
 std::optional<std::string> undetermined_time(const Model& model, const Eigen::MatrixXd& covariance) {
   const BoundEffect& effect = model.effects.back();
-  if (!has_memory(effect.effect->spec())) return std::nullopt;
+  if (!has_linear_memory(*effect.effect) && !reads_the_past(effect.effect->spec())) return std::nullopt;
   for (const auto& coefficient : effect.coefficients) {
     if (coefficient.parameter < 0 || model.parameters[coefficient.parameter].unit != "s") continue;
     if (const auto value = undetermined(model, covariance, coefficient.parameter)) return "its time is not determined: " + *value;

@@ -36,7 +36,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 
 /// "its time is not determined: sensor_tau = 0.16 ± 0.11 s" where a time of the model's last effect, which remembers, is smaller than two
 /// sigmas: at a time of 0 there is nothing to remember, and its interval reaches that. So a gain of the fit is not that of a memory of this
-/// form. nullopt: none is, or `covariance` (of the free parameters) is not known.
+/// form. Of linear memories and delays: a limit of a rate is one whatever the time of following within it. nullopt: none is, or
+/// `covariance` (of the free parameters) is not known.
 [[nodiscard]] std::optional<std::string> undetermined_time(const Model& model, const Eigen::MatrixXd& covariance);
 
 /// "its step = 0.77 V, but the measurements are 0.11 V (RMS) from multiples of it" where the model's last effect reads an output in whole

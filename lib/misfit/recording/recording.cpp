@@ -273,12 +273,29 @@ class ColumnClassifier {
       c.is_measured_input = c.use == ColumnUse::input && is_smooth(values(i));
     }
     if (!of_use(ColumnUse::output).empty()) return;
+    take_an_input_as_output(open);
+  }
+
+  /// It stays where it is for many samples: somebody sets it.
+  [[nodiscard]] static bool is_set(const ColumnSurvey& c) {
+    constexpr double mostly = 0.9;
+    return c.is_stepwise && c.repeat_share > mostly;
+  }
+
+  /// Where every column looks like an input: a name ("force") says less than a column that somebody sets beside one that varies.
+  void take_an_input_as_output(const std::vector<std::size_t>& open) {
     const auto unlike = std::find_if(open.rbegin(), open.rend(), [this](std::size_t i) { return !is_named_input(out_.columns[i]); });
-    ColumnSurvey& last = out_.columns[unlike == open.rend() ? open.back() : *unlike];
+    const auto varies = std::find_if(open.rbegin(), open.rend(), [this](std::size_t i) { return !out_.columns[i].is_stepwise; });
+    const bool all_others_set = varies != open.rend() && std::all_of(open.begin(), open.end(), [&](std::size_t i) {
+                                  return i == *varies || is_set(out_.columns[i]);
+                                });
+    ColumnSurvey& last = out_.columns[all_others_set ? *varies : unlike == open.rend() ? open.back() : *unlike];
     last.use = ColumnUse::output;
     last.is_measured_input = false;
-    last.why = fmt::format("every column looks like an input; the last{} is taken as the output",
-                           unlike == open.rend() ? "" : " that is not called like one");
+    last.why = all_others_set
+                   ? std::string("called like an input, but it varies, and what else there is stays where it is for many samples")
+                   : fmt::format("every column looks like an input; the last{} is taken as the output",
+                                 unlike == open.rend() ? "" : " that is not called like one");
   }
 
   /// An output that is another's derivative.

@@ -33,11 +33,15 @@ const Fit* leading_fit(const std::vector<Fit>& fits) {
 /// What the likelihood says of what a rung added. A part: something remained beside it, and still does at the end of the ladder, so that it
 /// may only look like what is missing. Untested: no likelihood compares it with the model before (another system, or a comparison that was
 /// cut off).
-enum class Evidence { needed, a_part, predicts_worse, chance, untested };
+/// Of the hold: it is late by half a sampling interval, which is the hold of an input and nothing that is missing.
+enum class Evidence { needed, of_the_hold, a_part, predicts_worse, chance, untested };
+
+bool is_of_the_hold(const std::optional<std::string>& also) { return also && also->starts_with(half_a_sample); }
 
 Evidence evidence_for(const Rung& rung, bool something_remains) {
   if (!rung.actual_drop) return Evidence::untested;
   if (explains_no_more_than_chance(rung)) return Evidence::chance;
+  if (is_of_the_hold(rung.also)) return Evidence::of_the_hold;
   if (rung.held_out_gain && *rung.held_out_gain < 0.0) return Evidence::predicts_worse;
   return rung.remained && something_remains ? Evidence::a_part : Evidence::needed;
 }
@@ -255,7 +259,10 @@ class VerdictBuilder {
     if (!effects_added_) with_candidate(best);
     std::string sentence = best.group.size() > 1
                                ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: " + name + " fits best"
-                               : (effects_added_ ? "still missing: " : "missing: ") + name;
+                               : (is_of_the_hold(best.also) ? "the hold of an input is wrong, which looks like "
+                                  : effects_added_          ? "still missing: "
+                                                            : "missing: ") +
+                                     name;
     sentence += values + " (" + p_equals(best.p_value) + ")";
     if (best.also) sentence += "; " + *best.also;
     if (const std::string change = effects_added_ ? change_by_ladder() : ""; !change.empty())
@@ -388,6 +395,13 @@ class VerdictBuilder {
     }
     return names;
   }
+  /// Of several rungs the first that no test accepted by itself: what came after it was chosen beside it. nullptr: there is none.
+  [[nodiscard]] const Rung* begun_with() const {
+    if (in_.ladder->rungs.size() < 3) return nullptr;
+    const auto found =
+        std::find_if(in_.ladder->rungs.begin(), in_.ladder->rungs.end(), [](const Rung& r) { return r.remained.has_value(); });
+    return found == in_.ladder->rungs.end() ? nullptr : &*found;
+  }
   [[nodiscard]] std::string names_added() const { return join_words(added_names()); }
 
   /// "a was missing: with all that was added the error falls; b was added and explains no more than chance does; ", and what comes behind.
@@ -398,8 +412,16 @@ class VerdictBuilder {
     const auto part = [&](const std::vector<std::string>& names, const char* of_one, const char* of_several) {
       if (!names.empty()) parts.push_back(join_words(names) + (names.size() == 1 ? of_one : of_several));
     };
-    const bool doubtful = !out_.doubts.empty();
-    part(needed, doubtful ? " describes what was missing" : " was missing", doubtful ? " describe what was missing" : " were missing");
+    const bool doubtful = !out_.doubts.empty() || begun_with() != nullptr, rises = !out_.errors.empty() && clearly_rises(out_.errors.front());
+    part(needed,
+         rises      ? " was added"
+         : doubtful ? " describes what was missing"
+                    : " was missing",
+         rises      ? " were added"
+         : doubtful ? " describe what was missing"
+                    : " were missing");
+    part(added_names(Evidence::of_the_hold), " is half a sampling interval late: it is the hold of an input that is wrong, not the model",
+         " are half a sampling interval late: it is the hold of an input that is wrong, not the model");
     part(a_part, " explains a part of what is missing", " explain a part of what is missing");
     part(untested, " was added, and no likelihood compares it with the model before",
          " were added, and no likelihood compares them with the models before");
@@ -412,6 +434,9 @@ class VerdictBuilder {
     }
     parts.push_back(rest);
     if (const std::string doubts = doubts_in_words(); !doubts.empty()) parts.push_back(doubts);
+    if (const Rung* first = begun_with())
+      parts.push_back(added_in_words(*first, *in_.ladder) +
+                      " was begun with though by itself it left a lack of fit, so that it may stand for something else");
     say(kind, fmt::format("{}", fmt::join(parts, "; ")), next);
     const std::string& first = parts.front();
     out_.sentence.replace(0, 1, first, 0, 1);  // names of effects keep their small letters

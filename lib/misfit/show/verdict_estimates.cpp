@@ -52,6 +52,7 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     std::string line = added_in_words(rung, ladder) + ": " + values_of(now);
     if (&rung != &last && values_of(now) != values_of(rung.parameters))
       line += fmt::format(" in the last model ({} in rung {})", values_of(rung.parameters), rung.id);
+    if (rung.kept) line += "; " + *rung.kept;
     if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
     out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }

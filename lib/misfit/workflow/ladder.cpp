@@ -330,7 +330,10 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from) rung.roles = from->roles;
     if (from) rung.also = from->also;
     if (from) rung.remained = from->remaining;
-    if (from) append_note(rung.note, not_estimated_in_words(*from, work->fit));
+    if (const std::string kept = from ? not_estimated_in_words(*from, work->fit) : ""; !kept.empty()) {
+      rung.kept = kept;
+      append_note(rung.note, kept);
+    }
     const Watch watch("the comparison with rung " + std::to_string(parent.id), child->fit_limit(), options_.listener.progress_of("add"));
     compare_with_parent(*work, *parent_work, options_.threads, rung);
     if (from && !rung.validation_loglik) rung.gain_of_search = from->held_out_gain;

@@ -163,8 +163,12 @@ class Extension {
     if (!too_little.empty()) return too_little;
     const auto parent =
         std::find_if(ladder_.ladder().rungs.begin(), ladder_.ladder().rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
-    const double growth = parent == ladder_.ladder().rungs.end() ? 1.0 : growth_of_errors(parent->k_step, rung.k_step);
-    return growth > kMostGrowthOfErrors ? growth_in_words(growth) : "";
+    if (parent == ladder_.ladder().rungs.end()) return "";
+    constexpr double hardly = 1.05, hardly_held_out = 1.1;  // no test has accepted it: nothing may get worse with it
+    if (const double growth = growth_of_errors(parent->k_step, rung.k_step); growth > hardly) return growth_in_words(growth);
+    if (!parent->validation_k_step || !rung.validation_k_step) return "";
+    const double growth = growth_of_errors(*parent->validation_k_step, *rung.validation_k_step);
+    return growth > hardly_held_out ? "of what is held out, " + growth_in_words(growth) : "";
   }
 
   /// The first that the later ones have made needless goes, and those above it are added again without it. False: there is none.
