@@ -378,6 +378,14 @@ TEST(Verdict, WhatWasChosenBesideAnEffectThatNoTestAcceptedIsNotCalledMissing) {
                                           HasSubstr("coulomb_friction was begun with though by itself it left a lack of fit")));
 }
 
+TEST(Verdict, WhatMakesTheErrorsLargerWasNotMissing) {
+  Case c;
+  c.add_effect();
+  c.discovery = searched({}, SearchOutcome::none_missing, "");
+  std::swap(c.ladder->rungs.front().k_step, c.ladder->rungs.back().k_step);
+  EXPECT_THAT(c.verdict().sentence, AllOf(testing::StartsWith("coulomb_friction was added: with it"), HasSubstr("rises")));
+}
+
 TEST(Verdict, HalfASamplingIntervalIsTheHoldOfAnInput) {
   Case c;
   c.add_effect();

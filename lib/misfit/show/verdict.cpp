@@ -395,6 +395,17 @@ class VerdictBuilder {
     }
     return names;
   }
+  /// With what was added an RMS error is larger, and none is smaller.
+  [[nodiscard]] bool gets_worse() const {
+    constexpr double hardly = 3.0;  // [%]
+    bool rises = false, falls = false;
+    for (const ErrorChange& e : out_.errors) {
+      if (e.kind != ErrorKind::rms_error || e.within_sigma()) continue;
+      rises = rises || e.per_cent().value_or(0.0) > hardly;
+      falls = falls || e.per_cent().value_or(0.0) < 0.0;
+    }
+    return rises && !falls;
+  }
   /// Of several rungs the first that no test accepted by itself: what came after it was chosen beside it. nullptr: there is none.
   [[nodiscard]] const Rung* begun_with() const {
     if (in_.ladder->rungs.size() < 3) return nullptr;
@@ -412,7 +423,7 @@ class VerdictBuilder {
     const auto part = [&](const std::vector<std::string>& names, const char* of_one, const char* of_several) {
       if (!names.empty()) parts.push_back(join_words(names) + (names.size() == 1 ? of_one : of_several));
     };
-    const bool doubtful = !out_.doubts.empty() || begun_with() != nullptr, rises = !out_.errors.empty() && clearly_rises(out_.errors.front());
+    const bool doubtful = !out_.doubts.empty() || begun_with() != nullptr, rises = gets_worse();
     part(needed,
          rises      ? " was added"
          : doubtful ? " describes what was missing"

@@ -164,7 +164,7 @@ class Extension {
     const auto parent =
         std::find_if(ladder_.ladder().rungs.begin(), ladder_.ladder().rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
     if (parent == ladder_.ladder().rungs.end()) return "";
-    constexpr double hardly = 1.05, hardly_held_out = 1.1;  // no test has accepted it: nothing may get worse with it
+    constexpr double hardly = 1.03, hardly_held_out = 1.05;  // no test has accepted it: nothing may get worse with it
     if (const double growth = growth_of_errors(parent->k_step, rung.k_step); growth > hardly) return growth_in_words(growth);
     if (!parent->validation_k_step || !rung.validation_k_step) return "";
     const double growth = growth_of_errors(*parent->validation_k_step, *rung.validation_k_step);
