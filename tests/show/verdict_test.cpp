@@ -378,6 +378,18 @@ TEST(Verdict, WhatWasChosenBesideAnEffectThatNoTestAcceptedIsNotCalledMissing) {
                                           HasSubstr("coulomb_friction was begun with though by itself it left a lack of fit")));
 }
 
+TEST(Verdict, WhatTheSearchAcceptedAndItsRungDidNotBearOutIsNotCalledMissing) {
+  Case c;
+  c.add_effect();
+  Candidate best = candidate("input_lag", 1e-9, true);
+  c.discovery = searched({best}, SearchOutcome::accepted, "Missing: input_lag");
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("Still missing: input_lag"));
+  c.ladder->rungs.back().why_too_little = std::map<std::string, std::string>{{"input_lag", "the held-out log-likelihood rises by 0.1"}};
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("whether more is missing is not decided: input_lag was accepted, added and taken off again, "
+                                              "since once fitted the held-out log-likelihood rises by 0.1"));
+  EXPECT_EQ(c.verdict().kind, VerdictKind::not_decided);
+}
+
 TEST(Verdict, WhatMakesTheErrorsLargerWasNotMissing) {
   Case c;
   c.add_effect();

@@ -84,7 +84,8 @@ class VerdictBuilder {
     } else if (!in_.discovery->sweep_asks.empty()) {
       calibration();
     } else if (const Candidate* best = accepted(*in_.discovery)) {
-      missing(*best);
+      const std::string* why = why_taken_off(effect_at(best->effect, best->roles));
+      why == nullptr ? missing(*best) : taken_off(*best, *why);
     } else {
       nothing_accepted(*in_.discovery);
     }
@@ -253,6 +254,20 @@ class VerdictBuilder {
     return out;
   }
 
+  /// Of what `discover --auto` has tried beside the last model in vain; nullptr: it has not tried that.
+  [[nodiscard]] const std::string* why_taken_off(const std::string& name) const {
+    const Rung* last = in_.ladder != nullptr && !in_.ladder->rungs.empty() ? &in_.ladder->rungs.back() : nullptr;
+    return last != nullptr && last->why_too_little && last->why_too_little->contains(name) ? &last->why_too_little->at(name) : nullptr;
+  }
+
+  /// The search has accepted it, and its rung has gained too little.
+  void taken_off(const Candidate& best, const std::string& why) {
+    const std::string words = "whether " + std::string(effects_added_ ? "more" : "something") +
+                              " is missing is not decided: " + effect_at(best.effect, best.roles) +
+                              " was accepted, added and taken off again, since once fitted " + why;
+    effects_added_ ? added(words, add_by_hand(best), VerdictKind::not_decided) : say(VerdictKind::not_decided, words, add_by_hand(best));
+  }
+
   void missing(const Candidate& best) {
     const std::string name = effect_at(best.effect, best.roles);
     const std::string values = best.parameters.empty() ? "" : ", with " + parameters_in_words(best);
@@ -300,12 +315,10 @@ class VerdictBuilder {
   /// "; X was added as a curve of unknown form and taken off again: …" of each that is not untried(): what was tried, and the number that
   /// decided.
   [[nodiscard]] std::string curves_in_vain(const std::vector<EffectPlace>& curves) const {
-    const Rung* last = in_.ladder != nullptr && !in_.ladder->rungs.empty() ? &in_.ladder->rungs.back() : nullptr;
     std::string out;
     for (const EffectPlace& curve : curves) {
       const std::string name = effect_at(curve.effect, curve.roles);
-      const std::string* why =
-          last != nullptr && last->why_too_little && last->why_too_little->contains(name) ? &last->why_too_little->at(name) : nullptr;
+      const std::string* why = why_taken_off(name);
       if (on_ladder(curve)) {
         out += fmt::format("; its curve of unknown form, {}, is in the last model already and leaves this", name);
       } else {

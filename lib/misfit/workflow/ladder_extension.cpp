@@ -76,7 +76,11 @@ class Extension {
       families_ = static_cast<double>(discovery.candidates.size());
       const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
       if (next && has_left(*next)) break;
-      if (next ? !add(*next, alternatives_to(*next, discovery)) : !begin_with_one(discovery) && !add_curve(discovery)) break;
+      if (next && !add(*next, alternatives_to(*next, discovery))) {
+        ladder_.gained_too_little(effect_at(next->effect, next->roles), why_off_);
+        break;
+      }
+      if (!next && !begin_with_one(discovery) && !add_curve(discovery)) break;
       while (one_leaves() || one_is_exchanged() || one_is_sharper() || one_is_named()) {
       }
     }
@@ -90,16 +94,18 @@ class Extension {
                        [&](const Candidate& c) { return c.effect == candidate.effect && c.roles == candidate.roles; });
   }
 
-  /// False: the rung gains nothing and is off again.
+  /// False: the rung gains too little once it is fitted, as why_off_ says, and is off again.
   bool add(const Candidate& candidate, std::vector<Candidate> alternatives) {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
-    if (rung.actual_drop && may_be_chance(*rung.actual_drop, parameters_added(rung), families_)) {
-      why_off_ = why_too_little(rung.actual_drop, std::nullopt, parameters_added(rung), families_);
-      ladder_.root().note(fmt::format("{} gains nothing once fitted (drop {}): its rung is taken off",
-                                      effect_at(candidate.effect, candidate.roles), format_value(*rung.actual_drop)));
-      ladder_.remove(std::to_string(rung.id));
-      return false;
+    if (rung.actual_drop) {
+      why_off_ = why_too_little(rung.actual_drop, rung.held_out_gain, parameters_added(rung), families_);
+      if (!why_off_.empty()) {
+        const std::string name = effect_at(candidate.effect, candidate.roles);
+        ladder_.root().note(fmt::format("{}: once fitted, {}: its rung is taken off", name, why_off_));
+        ladder_.remove(std::to_string(rung.id));
+        return false;
+      }
     }
     added_.push_back({rung.id, ladder_.last().model.request.effects.back().name, candidate, std::move(alternatives)});
     return true;
