@@ -576,6 +576,19 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
               AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("still missing that depends on w")));
 }
 
+TEST(Verdict, OfSomethingUnknownTheNearestEffectOfTheLibraryIsNamedWithWhatItLeaves) {
+  Case c;
+  Candidate nearest = candidate("rate_limit", 1e-9, false);
+  nearest.actual_drop = 258.9;
+  nearest.remaining = "an unknown surface dw/dt(w, U)";
+  c.discovery = searched({nearest}, SearchOutcome::unknown_form, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "dw/dt";
+  c.discovery->unexplained_quantity = "w";
+  EXPECT_THAT(c.verdict().sentence,
+              HasSubstr("; rate_limit of the library comes nearest (drop 258.9), and leaves an unknown surface dw/dt(w, U); look where"));
+  EXPECT_EQ(c.verdict().next, "misfit add configs/motor rate_limit");
+}
+
 TEST(Verdict, OfACurveThatWasRefusedItSaysWhatDecidedAndWhatIsNext) {
   Case c;
   c.add_effect();

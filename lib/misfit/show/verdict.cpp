@@ -15,6 +15,7 @@
 #include "misfit/show/error_changes.h"
 #include "misfit/show/rows.h"
 #include "misfit/show/verdict_estimates.h"
+#include "misfit/show/verdict_evidence.h"
 
 namespace misfit {
 namespace {
@@ -28,22 +29,6 @@ const Fit* leading_fit(const std::vector<Fit>& fits) {
     if (last == nullptr || !fit.rms.empty()) last = &fit;
   }
   return last;
-}
-
-/// What the likelihood says of what a rung added. A part: something remained beside it, and still does at the end of the ladder, so that it
-/// may only look like what is missing. Untested: no likelihood compares it with the model before (another system, or a comparison that was
-/// cut off).
-/// Of the hold: it is late by half a sampling interval, which is the hold of an input and nothing that is missing.
-enum class Evidence { needed, of_the_hold, a_part, predicts_worse, chance, untested };
-
-bool is_of_the_hold(const std::optional<std::string>& also) { return also && also->starts_with(half_a_sample); }
-
-Evidence evidence_for(const Rung& rung, bool something_remains) {
-  if (!rung.actual_drop) return Evidence::untested;
-  if (explains_no_more_than_chance(rung)) return Evidence::chance;
-  if (is_of_the_hold(rung.also)) return Evidence::of_the_hold;
-  if (rung.held_out_gain && *rung.held_out_gain < 0.0) return Evidence::predicts_worse;
-  return rung.remained && something_remains ? Evidence::a_part : Evidence::needed;
 }
 
 /// Not decided: refits were cut off by a limit of their own, which a longer round does not lift.
@@ -338,6 +323,13 @@ class VerdictBuilder {
     return by_hand(rejected).empty() ? "" : command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
   }
 
+  /// The first candidate, where a lack of fit that it leaves is all that speaks against it; nullptr: it is another.
+  [[nodiscard]] static const Candidate* nearest_of_library(const Discovery& d) {
+    if (d.candidates.empty()) return nullptr;
+    const Candidate& first = d.candidates.front();
+    return first.remaining && first.actual_drop ? &first : nullptr;
+  }
+
   void nothing_accepted(const Discovery& d) {
     if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
       say(VerdictKind::not_decided, d.verdict, command("discover") + more_time(d.outcome));
@@ -345,12 +337,18 @@ class VerdictBuilder {
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const EffectPlace* curve = untried(d.unexplained_effects);
+      const Candidate* nearest = nearest_of_library(d);
+      if (nearest != nullptr)
+        unknown += fmt::format("; {} of the library comes nearest (drop {}), and leaves {}", effect_at(nearest->effect, nearest->roles),
+                               format_value(*nearest->actual_drop), *nearest->remaining);
       if (curve == nullptr) {
         unknown += curves_in_vain(d.unexplained_effects) +
                    "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help "
                    "system)";
       }
-      const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles) : command("open");
+      const std::string next = curve != nullptr     ? command("add", curve->effect) + at_place(curve->roles)
+                               : nearest != nullptr ? add_by_hand(*nearest)
+                                                    : command("open");
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
