@@ -58,6 +58,12 @@ TEST(ParseUnit, RelatesElectricalUnits) {
   EXPECT_DOUBLE_EQ(parse_unit("mV").to_si, 1e-3);
 }
 
+TEST(ParseUnit, CountsAmountsOfSubstance) {
+  EXPECT_DOUBLE_EQ(parse_unit("kmol/m^3").to_si, parse_unit("mol/l").to_si);
+  EXPECT_EQ(parse_unit("mmol").dimension, Dimension{});
+  EXPECT_EQ(parse_unit("kOhm").to_si, 1000.0 * parse_unit("ohm").to_si);
+}
+
 TEST(ParseUnit, TakesNothingAndADashAsDimensionless) {
   for (const char* text : {"", "-", "%", "1", "rad", "deg"}) EXPECT_EQ(parse_unit(text).dimension, Dimension{}) << text;
 }

@@ -87,6 +87,20 @@ TEST(Recording, WhereAllColumnsLookLikeInputsTheOutputIsOneThatIsNotCalledSo) {
   EXPECT_EQ(column(s, "heater").use, ColumnUse::input);
 }
 
+/// "force" may be what drives or what is measured; a stimulation that somebody sets drives.
+TEST(Recording, AColumnThatIsSetDrivesOneThatVariesAlsoWhereThatIsCalledLikeAnInput) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> level(0.0, 1.0);
+  double stim = 0.0;
+  const RecordingSurvey s = survey(rows("t_s,stim,force[N]", 400, [&](int k) {
+    if (k % 40 == 0) stim = level(random);
+    return fmt::format("{},{:.4f},{}", 0.05 * k, stim, 100.0 * stim + 0.3 * std::sin(7.0 * k));
+  }));
+  EXPECT_EQ(column(s, "stim").use, ColumnUse::input);
+  EXPECT_EQ(column(s, "force").use, ColumnUse::output);
+  EXPECT_THAT(column(s, "force").why, HasSubstr("called like an input, but it varies"));
+}
+
 TEST(Recording, AMeasuredRateIsKnownByItsValues) {
   const RecordingSurvey s = survey(rows("t_s,theta_rad,omega_degps", 300, [](int k) {
     const double t = 0.01 * k;
