@@ -177,8 +177,8 @@ bool WindowSearch::any_output(const std::vector<Eigen::Index>& terms) const {
   return std::any_of(terms.begin(), terms.end(), [this](Eigen::Index term) { return is_output(term); });
 }
 
-/// By how much a driver that is in the model lowers the error at least. An input beside another output that drives the model makes up for
-/// the noise of that one.
+/// The share of the error without it that a driver which is in the model leaves at most. An input beside another output that drives the
+/// model makes up for the noise of that one.
 double WindowSearch::most_with(Eigen::Index term, const std::vector<Eigen::Index>& others) const {
   if (is_output(term)) return 0.5;
   return any_output(others) ? clearly : 0.95;
