@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "misfit/core/error.h"
 #include "tests/model/declared_texts.h"
@@ -54,6 +55,15 @@ ExperimentStudy plain() {
 TEST(SignalsFrom, UnitsBecomeSI) {
   const Signals s = signals_from(recording(50), eq_8(), plain());
   EXPECT_NEAR(s.measured.front().values[0], 12.0 * degree, 1e-12);
+}
+
+TEST(SignalsFrom, ATimeThatIsCalledSoIsFoundWhereNoColumnIsCalledT) {
+  Table table = recording(50);
+  table.columns.front().name = "time_ms";
+  table.columns.front().unit = "";
+  EXPECT_NEAR(signals_from(table, eq_8(), plain()).t.at(10), 0.2e-3, 1e-12) << "0.2 ms";
+  table.columns.front().name = "seconds";
+  EXPECT_THROW(std::ignore = signals_from(table, eq_8(), plain()), InputError);
 }
 
 TEST(SignalsFrom, AnInputIsUnwrappedAndMissingValuesAreBridgedButNotUsed) {

@@ -131,8 +131,17 @@ class Reader {
   }
   Source line(std::size_t row) const { return {table_.source, row < table_.line.size() ? table_.line[row] : 0, 0}; }
 
+  /// Where the study maps no column to it and none is called t: one that is called time, as misfit init would take it.
+  [[nodiscard]] ColumnMap map_of_time() const {
+    if (header("t") != "t" || table_.find("t") != nullptr) return study_.columns;
+    for (const char* name : {"time", "time_s", "t_s", "time_ms", "t_ms", "Time", "TIME"}) {
+      if (table_.find(name) != nullptr) return {{{"t", name}}};
+    }
+    return study_.columns;
+  }
+
   void read_time() {
-    const std::vector<double> t = values_of("t", "s");
+    const std::vector<double> t = map_of_time().values(table_, "t", "s", out_.notes);
     for (std::size_t i = 0; i < t.size(); ++i) {
       if (!std::isfinite(t[i])) continue;
       if (!rows_.empty() && !(t[i] > t[rows_.back()])) {
