@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "misfit/discover/verdict.h"
 #include "tests/discover/record.h"
 
@@ -29,6 +31,27 @@ TEST(AnEdge, BelowAllThatWasVisitedIsNone) {
   ASSERT_TRUE(words);
   EXPECT_THAT(*words, testing::AllOf(testing::StartsWith("its threshold = -5"), testing::HasSubstr("is outside of what was visited"),
                                      testing::HasSubstr("there it is no edge")));
+}
+
+/// A cart driven through an actuator with a lag of 60 ms, fitted with a limit of its rate held at `limit` [N/s].
+std::optional<std::string> limit_of(double limit) {
+  static std::vector<Signals> signals;  // an estimate points to it
+  signals = {record_of_cart({effect("input_lag")}, {{"lagged_gain", 1.0}, {"input_tau", 0.06}})};
+  ModelRequest request = cart({effect("viscous_friction"), effect("rate_limit")});
+  for (const auto& [name, value] : std::map<std::string, double>{{"limited_gain", 1.0}, {"rate_limit", limit}, {"follow_time", 0.06}}) {
+    request.parameters[name].value = value;
+    request.parameters[name].free = false;
+  }
+  return hardly_reached(estimate_filter(assemble(request, registry()), {}, signals));
+}
+
+TEST(ALimitOfARate, ThatSamplesReachIsOne) { EXPECT_FALSE(limit_of(100.0)); }
+
+TEST(ALimitOfARate, ThatIsHardlyReachedIsNone) {
+  const auto words = limit_of(5000.0);
+  ASSERT_TRUE(words);
+  EXPECT_THAT(*words,
+              testing::AllOf(testing::StartsWith("its rate_limit = 5000 N/s is reached in"), testing::HasSubstr("% of the samples")));
 }
 
 }  // namespace

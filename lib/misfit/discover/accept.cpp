@@ -60,8 +60,8 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   const auto memory = outlasts_recording(refitted, refitted.effects.back(), longest_recording(context.experiments));
   const auto off_steps = off_whole_steps(e.refit->estimate.model, context.experiments);
   const auto no_edge = edge_not_visited(e.refit->estimate);
-  const auto idle = idle_input(e.refit->estimate);
-  e.degenerate = memory || off_steps || no_edge || idle || !e.refit->partial.empty();
+  const auto idle = idle_input(e.refit->estimate), no_limit = hardly_reached(e.refit->estimate);
+  e.degenerate = memory || off_steps || no_edge || idle || no_limit || !e.refit->partial.empty();
   if (idle) return *idle + " acts nowhere in the model, so that nothing of what it does can be " + c.effect + ": input_gain comes first";
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
@@ -73,6 +73,7 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   if (memory) return "its " + *memory;
   if (off_steps) return *off_steps;
   if (no_edge) return *no_edge;
+  if (no_limit) return *no_limit;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
   if (const double growth = held_out.growth_ahead(e.refit->estimate); growth > kMostGrowthOfErrors) return growth_in_words(growth);
   e.alone_gains_nothing = !(*c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit)));

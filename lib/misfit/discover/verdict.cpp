@@ -11,6 +11,7 @@
 #include "misfit/discover/candidate_model.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/inference/states.h"
+#include "misfit/model/evaluator.h"
 #include "misfit/model/memory.h"
 
 namespace misfit {
@@ -193,6 +194,32 @@ std::optional<std::string> edge_not_visited(const FilterEstimate& estimate) {
            in_display_unit(range->low, p.unit) + " to " + in_display_unit(range->high, p.unit) + ": there it is no edge";
   }
   return std::nullopt;
+}
+
+std::optional<std::string> hardly_reached(const FilterEstimate& estimate) {
+  constexpr double least = 0.02, at_the_limit = 0.99;
+  const BoundEffect& effect = estimate.model.effects.back();
+  const EffectSpec& spec = effect.effect->spec();
+  const auto limit = std::find_if(spec.coefficients.begin(), spec.coefficients.end(),
+                                  [](const CoefficientSpec& c) { return std::string_view(c.scan.over).ends_with("|/step"); });
+  if (limit == spec.coefficients.end() || spec.states.empty()) return std::nullopt;
+  const Parameter& p = estimate.model.parameters[effect.coefficients[limit - spec.coefficients.begin()].parameter];
+  Evaluator evaluator(estimate.forced.model);
+  std::vector<double> rates(evaluator.states());
+  const int own = estimate.model.system_states() + effect.first_state;
+  double reached = 0.0, samples = 0.0;
+  for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
+    const FilterTrace& trace = estimate.traces[e];
+    const FilterData& data = estimate.data[e];
+    for (std::size_t k = data.first; k < trace.samples; ++k) {
+      evaluator.rates(trace.filtered(k).data(), data.inputs.at(k), data.signals->t[k], rates.data());
+      samples += 1.0;
+      if (std::abs(rates[own]) >= at_the_limit * p.value) reached += 1.0;
+    }
+  }
+  if (!(reached < least * samples)) return std::nullopt;
+  return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + " is reached in " + format_value(100.0 * reached / samples, 0.1) +
+         " % of the samples alone";
 }
 
 std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments) {

@@ -50,6 +50,11 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// of the visited range outside of it: there the effect is on, or off, all the time. nullopt: all lie inside, or it has none.
 [[nodiscard]] std::optional<std::string> edge_not_visited(const FilterEstimate& estimate);
 
+/// "its rate_limit = 930 N/s is reached in 0.4 % of the samples alone" where a limit of the rate of an own state of the model's last effect
+/// (ScanSpec::over is "|ROLE|/step") is reached in less than 2 % of the filtered samples: the effect is what it is without the limit, and
+/// what that gains is a few samples. nullopt: it is reached more often, or no such limit is among its coefficients.
+[[nodiscard]] std::optional<std::string> hardly_reached(const FilterEstimate& estimate);
+
 /// Remarks on the camera: parameters that are significant in the sweep but not in the camera (kept in Discovery::sweep_asks). Nothing is
 /// accepted then: the drop of a sensor effect comes from its prior, the sweep's, so that the remedy is to calibrate again; and a physical
 /// effect may describe the error of the camera. Where the flight gives evidence of physics too, be it refused, of unknown form or not yet
