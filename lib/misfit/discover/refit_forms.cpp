@@ -47,7 +47,18 @@ bool rounds(const BoundEffect& effect) {
                      [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
 }
 
-/// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole.
+/// With two free shapes an effect follows much that it is not, so long as it may be a part of itself.
+bool is_flexible(const FilterEstimate& estimate) {
+  const BoundEffect& effect = estimate.model.effects.back();
+  const auto free = std::count_if(effect.coefficients.begin(), effect.coefficients.end(), [&](const BoundCoefficient& c) {
+    return c.parameter >= 0 && estimate.model.parameters[c.parameter].free &&
+           estimate.model.parameters[c.parameter].kind == CoefficientKind::shape;
+  });
+  return free > 1;
+}
+
+/// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole. A flexible effect that
+/// fits worse as a whole is none.
 std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
   constexpr double more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
   const double less = rounds(estimate.model.effects.back()) ? 0.9 : 0.3;
@@ -55,9 +66,10 @@ std::string part_of_effect(const FilterEstimate& estimate, const std::vector<Who
     const Parameter& p = estimate.model.parameters[w.parameter];
     const double sigma = standard_error_of(estimate.model, estimate.covariance, w.parameter).value_or(0.0);
     const double share = p.value / w.value, of_sigma = 2.0 * sigma / std::abs(w.value);
-    if (share >= 1.0 - std::max(less, of_sigma) && share <= 1.0 + std::max(more, of_sigma)) continue;
+    const bool about_whole = share >= 1.0 - std::max(less, of_sigma) && share <= 1.0 + std::max(more, of_sigma);
+    if (about_whole && !is_flexible(estimate)) continue;
     return p.name + " = " + in_display_unit(p.value, p.unit, sigma) + ", where the whole effect would have " +
-           in_display_unit(w.value, p.unit);
+           in_display_unit(w.value, p.unit) + (about_whole ? ", and fits worse" : "");
   }
   return {};
 }
