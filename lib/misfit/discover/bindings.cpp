@@ -156,15 +156,18 @@ std::vector<Roles> times_factors(const std::vector<Roles>& places) {
   return out;
 }
 
-/// Each place with its factor once per state that may multiply it, each pair once: an input is what sets how strongly a state acts, and so
-/// may another state be (a rate constant and a concentration, a damping that depends on the position).
+/// Each place whose factor is a state once per other state that may multiply it, each pair once: an input is what sets how strongly a state
+/// acts, and so may another state be (a rate constant and a concentration, a damping that depends on the position). Of small systems: among
+/// the many products of a larger one there is one that looks like whatever is missing (of the velocities of two masses, a square of their
+/// difference).
 std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
-  constexpr std::size_t most_states = 6;  // of larger systems there would be hundreds
+  constexpr std::size_t most_states = 3;
   std::vector<Roles> out;
   if (!suggests_places(system) || system.states.size() > most_states) return out;
   std::set<std::array<std::string, 3>> known;
   for (const Roles& place : places) {
     const std::string& factor = place.at("factor");
+    if (state_called(system, factor) == nullptr) continue;
     for (const StateSpec& state : system.states) {
       const auto [first, second] = std::minmax(factor, state.name);
       if (state.name == factor || !known.insert({place.at("port"), first, second}).second) continue;
