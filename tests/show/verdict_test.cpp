@@ -388,6 +388,7 @@ TEST(Verdict, WhatTheSearchAcceptedAndItsRungDidNotBearOutIsNotCalledMissing) {
   EXPECT_THAT(c.verdict().sentence, HasSubstr("whether more is missing is not decided: input_lag was accepted, added and taken off again, "
                                               "since once fitted the held-out log-likelihood rises by 0.1"));
   EXPECT_EQ(c.verdict().kind, VerdictKind::not_decided);
+  EXPECT_THAT(c.verdict().next, testing::StartsWith("misfit export")) << "not to be added again";
 }
 
 TEST(Verdict, WhatMakesTheErrorsLargerWasNotMissing) {

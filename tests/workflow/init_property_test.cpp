@@ -230,11 +230,26 @@ TEST(InitOfManyColumns, KeepsTheFirstOnesWithinTheLimitsAndNamesTheOthers) {
   EXPECT_EQ(model.inputs.front(), "u0");
   ASSERT_FALSE(model.outputs.empty());
   EXPECT_EQ(model.outputs.front().name, "y0");
-  ASSERT_EQ(model.remarks.size(), 3U);
+  ASSERT_EQ(model.remarks.size(), 2U);
   expect_parts(model.remarks[0], {"not in the model: inputs u8, u9", "at most"});
   expect_parts(model.remarks[1], {"not in the model: outputs", "more", "parameters"});
-  expect_parts(model.remarks[2], {"in no equation of the first model: u", "input_gain"});
   study_is_built(data, folder.path());
+}
+
+TEST(InitOfAnInput, ThatMovesNothingIsInNoEquationAndSaidToBe) {
+  const TemporaryFolder folder;
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  std::string text = "t[s],u[V],valve[-],y[m]\n";
+  double u = 0.0, y = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    if (k % 40 == 0) u = normal(random);
+    text += fmt::format("{:.1f},{:.4f},{},{:.5f}\n", 0.1 * k, u, k / 70 % 3, y + 0.01 * normal(random));
+    y += 0.05 * (u - y);
+  }
+  const GuessedModel model = guess_model(survey_recording(folder.write("x.csv", text), names_of_formulas()));
+  ASSERT_EQ(model.remarks.size(), 1U);
+  expect_parts(model.remarks[0], {"in no equation of the first model: valve", "--input", "input_gain"});
 }
 
 TEST(InitOfAnInput, ThatChangesInTheHeldOutPartAloneSaysSo) {

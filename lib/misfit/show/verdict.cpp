@@ -250,7 +250,7 @@ class VerdictBuilder {
     const std::string words = "whether " + std::string(effects_added_ ? "more" : "something") +
                               " is missing is not decided: " + effect_at(best.effect, best.roles) +
                               " was accepted, added and taken off again, since once fitted " + why;
-    effects_added_ ? added(words, add_by_hand(best), VerdictKind::not_decided) : say(VerdictKind::not_decided, words, add_by_hand(best));
+    effects_added_ ? added(words, export_command(), VerdictKind::not_decided) : say(VerdictKind::not_decided, words, export_command());
   }
 
   void missing(const Candidate& best) {
