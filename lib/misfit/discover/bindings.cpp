@@ -443,8 +443,13 @@ std::vector<double> OperatingRange::grid(const BoundEffect& effect, std::size_t 
     origin = size ? 0.0 : range->low;
     unit = unit_of_scan(scanned_size(c.scan), *range, step_);
   }
+  // A side shape, as the time of following within a limit of a rate, has one value in a larger system: estimated at each of its places it
+  // costs minutes.
+  constexpr std::size_t small_system = 2;
+  const bool large = estimate_.model.system->spec().states.size() > small_system;
+  const int count = of_samples && c.fixed && large ? 1 : c.scan.count;
   std::vector<double> out;
-  for (int i = 0; i < c.scan.count; ++i) {
+  for (int i = 0; i < count; ++i) {
     const int steps = std::max(c.scan.count - 1, 1);
     const double share = size || of_samples ? c.scan.from * std::pow(c.scan.to / c.scan.from, static_cast<double>(i) / steps)
                                             : c.scan.from + (c.scan.to - c.scan.from) * i / steps;

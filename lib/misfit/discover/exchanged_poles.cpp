@@ -8,6 +8,7 @@
 
 #include "misfit/core/display.h"
 #include "misfit/core/text.h"
+#include "misfit/discover/candidate_model.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
@@ -62,7 +63,7 @@ int time_constant_of(const Model& model) {
   const EffectSpec& spec = bound.effect->spec();
   const bool in_series =
       std::any_of(spec.coefficients.begin(), spec.coefficients.end(), [](const CoefficientSpec& k) { return k.whole != 0.0; });
-  if (spec.states.empty() || !in_series) return -1;
+  if (!has_linear_memory(*bound.effect) || !in_series) return -1;
   int out = -1;
   for (const BoundCoefficient& c : bound.coefficients) {
     if (c.parameter < 0 || model.parameters[c.parameter].unit != "s") continue;

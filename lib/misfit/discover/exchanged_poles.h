@@ -13,7 +13,7 @@ namespace misfit {
 // at the order in whose basin it begins.
 
 /// The parameter that is the time constant [s] of the model's last effect, one that as a whole is in series with the system (of an input,
-/// of a sensor) and has own states and just one such; -1: it has none, or it is fixed.
+/// of a sensor), remembers linearly and has just one such; -1: it has none, or it is fixed.
 [[nodiscard]] int time_constant_of(const Model& model);
 
 /// Of the system's equations, linearised in the middle of the first recording: -1/pole of its real, stable poles that the recording can
