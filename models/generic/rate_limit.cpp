@@ -53,7 +53,7 @@ struct RateLimit {
        .scale = 0.1,
        .doc = "time constant of following within the limit",
        .fixed = true,
-       .scan = {.from = 0.5, .to = 32.0, .count = 4, .over = "step"}},
+       .scan = {.from = 0.5, .to = 32.0, .count = 4, .over = "step", .most_states = 2}},
   };
   enum State { z };
   static constexpr OwnStateSpec states[] = {{.name = "z", .unit = "{input}"}};

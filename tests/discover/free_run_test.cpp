@@ -49,5 +49,18 @@ TEST(FreeRun, ShowsWhatTheRandomForceTakesOver) {
   EXPECT_LT(calm->objective, estimate.objective) << "the estimate is the maximum";
 }
 
+/// A slow random force may have moved a parameter to where it explains nothing; the free run is fitted.
+TEST(FreeRun, HasTheParametersThatItFitsBest) {
+  const std::vector<Signals> recorded = {
+      record_of_cart({effect("periodic_forcing")}, {{"cosine", 0.4}, {"sine", 0.3}, {"frequency", 0.15}})};
+  FilterEstimate moved = estimate_of(recorded);
+  const auto stiffness = static_cast<std::size_t>(moved.model.find_parameter("stiffness"));
+  const double there = moved.model.parameters[stiffness].value;
+  for (Model* model : {&moved.model, &moved.forced.model}) model->parameters[stiffness].value = 1.1 * there;
+  const auto calm = free_run(moved, {recorded});
+  ASSERT_TRUE(calm);
+  EXPECT_NEAR(calm->model.parameters[stiffness].value, there, 0.03 * there);
+}
+
 }  // namespace
 }  // namespace misfit

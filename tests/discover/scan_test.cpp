@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "misfit/discover/candidate_model.h"
 #include "tests/fit/flight.h"
@@ -88,6 +89,30 @@ TEST(Scan, OfARateLimitIsOverWhatTheInputCouldDoBetweenSamples) {
   const auto [least, most] = scanned(carriage(0.0), "rate_limit");
   EXPECT_NEAR(least, 0.003 * per_sample, 0.02 * 0.003 * per_sample);
   EXPECT_NEAR(most, 0.3 * per_sample, 0.02 * 0.3 * per_sample);
+}
+
+/// Of a carriage alone four values; with what follows it, a third state, one.
+TEST(Scan, OfASideShapeIsOneValueInALargerSystem) {
+  const std::vector<Signals> signals = {carriage(0.0)};
+  const auto follow_times = [&](const std::string& text) {
+    const auto systems = registry_with(text);
+    const ModelRequest request = request_of("text");
+    const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
+    std::set<double> out;
+    for (const CandidateModel& c : candidate_models(estimate, request, *systems, nullptr)) {
+      if (c.effect != "rate_limit") continue;
+      for (const auto& cell : c.cells) out.insert(cell.at(1));
+    }
+    return out;
+  };
+  const std::set<double> small = follow_times(carriage_text);
+  ASSERT_EQ(small.size(), 4U);
+  EXPECT_NEAR(*small.begin(), 0.01, 1e-9) << "half a sampling interval";
+  EXPECT_NEAR(*small.rbegin(), 0.64, 1e-9) << "32 of them";
+  std::string larger = carriage_text;
+  larger.replace(larger.find("[inputs]"), 0, "w = { unit = \"m\", scale = 0.1 }\n");
+  larger.replace(larger.find("[outputs]"), 0, "w = \"c*(x - w)\"\n");
+  EXPECT_EQ(follow_times(larger), std::set<double>{*small.begin()});
 }
 
 /// Times with four digits, of which no difference of two is the interval.

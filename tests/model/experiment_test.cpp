@@ -62,8 +62,10 @@ TEST(SignalsFrom, ATimeThatIsCalledSoIsFoundWhereNoColumnIsCalledT) {
   table.columns.front().name = "time_ms";
   table.columns.front().unit = "";
   EXPECT_NEAR(signals_from(table, eq_8(), plain()).t.at(10), 0.2e-3, 1e-12) << "0.2 ms";
-  table.columns.front().name = "seconds";
-  EXPECT_THROW(std::ignore = signals_from(table, eq_8(), plain()), InputError);
+  for (const char* temperature : {"T", "T_degC", "x"}) {
+    table.columns.front().name = temperature;
+    EXPECT_THROW(std::ignore = signals_from(table, eq_8(), plain()), InputError) << temperature;
+  }
 }
 
 TEST(SignalsFrom, AnInputIsUnwrappedAndMissingValuesAreBridgedButNotUsed) {

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "misfit/core/error.h"
+#include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
 namespace misfit {
@@ -136,6 +137,22 @@ NameAndUnit read_header(const std::string& header) {
     out = {front, std::string(s.unit), "", s.written.size() == 1};
   }
   return out;
+}
+
+bool is_called(const std::string& name, std::span<const std::string_view> words) {
+  std::string word = lower_case(name);
+  while (!word.empty() && ((word.back() >= '0' && word.back() <= '9') || word.back() == '_')) word.pop_back();
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool is_called_time(const std::string& name) {
+  static constexpr std::array<std::string_view, 8> words = {"t", "time", "zeit", "timestamp", "sec", "seconds", "tijd", "temps"};
+  return is_called(name, words);
+}
+
+bool may_be_temperature(const std::string& name) {
+  static constexpr std::array<std::string_view, 1> word = {"t"};
+  return name != "t" && is_called(name, word);
 }
 
 }  // namespace misfit

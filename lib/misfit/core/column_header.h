@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace misfit {
 
@@ -13,5 +15,12 @@ struct NameAndUnit {
   bool of_one_letter = false;  ///< the unit is the last letter of the name: it may be a subscript
 };
 [[nodiscard]] NameAndUnit read_header(const std::string& header);
+
+/// The name, in small letters, or the name with a number behind it ("u1") is among the words.
+[[nodiscard]] bool is_called(const std::string& name, std::span<const std::string_view> words);
+/// A name without its unit that says time: "t", "Time", "zeit".
+[[nodiscard]] bool is_called_time(const std::string& name);
+/// It says time by its letter alone: "T", "T1", "t_2".
+[[nodiscard]] bool may_be_temperature(const std::string& name);
 
 }  // namespace misfit

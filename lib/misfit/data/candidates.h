@@ -24,10 +24,10 @@ enum class CandidateFamily { physics, generic, sensor, unknown };
 inline constexpr std::array<const char*, 4> candidate_family_names = {"physics", "generic", "sensor", "unknown"};
 [[nodiscard]] std::string to_string(CandidateFamily family);
 
-/// One thing that the model could lack.
 /// How Candidate::also begins where an effect is late by half a sampling interval: the hold of an input is wrong then, not the model.
 inline constexpr const char* half_a_sample = "that is half a sampling interval";
 
+/// One thing that the model could lack.
 struct Candidate {
   int rank = 0;        ///< 1 = first
   std::string effect;  ///< key, or "unknown:PORT(QUANTITY)"

@@ -34,7 +34,7 @@ struct Rung {
   std::optional<std::map<std::string, Estimate>> estimates;   ///< of all parameters of its model that are no coefficients of curves
   std::optional<std::vector<std::string>> doubts;             ///< Fit::doubts
   std::optional<std::string> kept;                            ///< "width is fixed at 0.5 rad/s": of the added effect, in words
-  std::optional<std::vector<std::string>> gained_too_little;  ///< curves of unknown form that were tried beside this model: effect_at()
+  std::optional<std::vector<std::string>> gained_too_little;  ///< tried beside this model in vain: effect_at()
   std::optional<std::map<std::string, std::string>> why_too_little;  ///< of each of those, with the number that decided: a clause
   std::optional<std::string> remained;                               ///< Candidate::remaining of what was added all the same
   std::optional<std::string> also;                                   ///< other values of what was added that explain hardly less, in words

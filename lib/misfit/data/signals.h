@@ -27,6 +27,7 @@ struct Signals {
   std::vector<std::string> notes;  ///< what was dropped and why, in words
 
   [[nodiscard]] std::size_t samples() const { return t.size(); }
+  [[nodiscard]] double seconds() const { return t.empty() ? 0.0 : t.back() - t.front(); }  ///< from the first sample to the last
   [[nodiscard]] bool held_out(std::size_t i) const { return t[i] >= validation_from && t[i] < validation_to; }
 };
 

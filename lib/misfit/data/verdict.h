@@ -55,7 +55,7 @@ struct Verdict {
   std::string where;                ///< where the study's own model fails, in a sentence; empty: nowhere that stands out
   std::vector<ErrorChange> errors;  ///< the most telling first
   std::vector<std::string> added;   ///< effects of the ladder with their estimates in its last model, a line each
-  std::vector<std::string> doubts;  ///< of parameters of the last model: a clause of each that is not determined, or ends at its bound
+  std::vector<std::string> doubts;  ///< Fit::doubts of the last model
   std::string parameters;           ///< of the fitted model with sigma and unit, where nothing was added and no named effect is to come
   std::optional<ErrorChange> trim;  ///< before and after, beside the references of the study (remark)
   std::string next;                 ///< what to do: a command; empty: nothing

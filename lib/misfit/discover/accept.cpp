@@ -29,7 +29,7 @@ CandidateModel with_quantities(CandidateModel candidate_model, const std::vector
 /// [s]
 double longest_recording(const std::vector<Signals>& experiments) {
   double longest = 0.0;
-  for (const Signals& s : experiments) longest = std::max(longest, s.t.empty() ? 0.0 : s.t.back() - s.t.front());
+  for (const Signals& s : experiments) longest = std::max(longest, s.seconds());
   return longest;
 }
 
@@ -58,17 +58,16 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   if (!near_a_maximum(*e.refit)) return "its refit has not converged: " + e.refit->estimate.message;
   const Model& refitted = e.refit->estimate.model;
   const auto memory = outlasts_recording(refitted, refitted.effects.back(), longest_recording(context.experiments));
-  const auto off_steps = off_whole_steps(e.refit->estimate.model, context.experiments);
+  const auto off_steps = off_whole_steps(refitted, context.experiments);
   const auto no_edge = edge_not_visited(e.refit->estimate);
   const auto idle = idle_input(e.refit->estimate), no_limit = hardly_reached(e.refit->estimate);
   e.degenerate = memory || off_steps || no_edge || idle || no_limit || !e.refit->partial.empty();
   if (idle) return *idle + " acts nowhere in the model, so that nothing of what it does can be " + c.effect + ": input_gain comes first";
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
-  if (const auto bound = ends_at_bound(e.refit->estimate.model, e.screening->candidate_model->strengths)) return *bound;
-  if (const auto unknown =
-          undetermined_strengths(e.refit->estimate.model, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
+  if (const auto bound = ends_at_bound(refitted, e.screening->candidate_model->strengths)) return *bound;
+  if (const auto unknown = undetermined_strengths(refitted, e.refit->estimate.covariance, e.screening->candidate_model->strengths))
     return *unknown;
-  if (const auto time = undetermined_time(e.refit->estimate.model, e.refit->estimate.covariance)) return *time;
+  if (const auto time = undetermined_time(refitted, e.refit->estimate.covariance)) return *time;
   if (const auto collinear = no_longer_determined(e.refit->estimate, context.estimate)) return *collinear;
   if (memory) return "its " + *memory;
   if (off_steps) return *off_steps;

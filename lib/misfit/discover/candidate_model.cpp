@@ -7,6 +7,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
 #include "misfit/discover/bindings.h"
+#include "misfit/discover/operating_range.h"
 #include "misfit/model/does_not_suit.h"
 #include "misfit/model/memory.h"
 

@@ -6,6 +6,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/watch.h"
 #include "misfit/discover/refit.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -18,13 +19,6 @@ constexpr double least_share = 0.2;
 struct Sizes {
   std::vector<double> size, ratio;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Sizes sizes_of(const std::vector<FilterTrace>& traces, const std::vector<FilterData>& data, std::size_t outputs) {
   constexpr double of_normal = 0.6745;  // median of |z|
@@ -47,14 +41,14 @@ Sizes sizes_of(const std::vector<FilterTrace>& traces, const std::vector<FilterD
   return out;
 }
 
-/// Fitted by a free run; where that cannot be, or gets lost, as it is.
-FilterEstimate settled(const FilterEstimate& estimate, const FreeRunWork& work) {
+/// Fitted by a free run; nullopt: it cannot be, or gets lost.
+std::optional<FilterEstimate> fitted_freely(const FilterEstimate& estimate, const FreeRunWork& work) {
   try {
     return estimate_freely(estimate.model, estimate.penalties, work.experiments, options_like(estimate, work.threads));
   } catch (const TimeLimitReached&) {
     throw;
   } catch (const RunError&) {
-    return estimate;
+    return std::nullopt;
   }
 }
 
@@ -86,23 +80,24 @@ std::optional<FilterEstimate> run_freely(FilterEstimate at, const FilterNoise& n
   return at;
 }
 
-bool shows_more(const FilterEstimate& calm, const FilterEstimate& one_step) {
+bool shows_more(const FilterEstimate& calm, const Sizes& one_step) {
   constexpr double least = 1.2;
-  const Sizes before = sizes_of(one_step.traces, one_step.data, one_step.noise.channels.size());
   const Sizes now = sizes_of(calm.traces, calm.data, calm.noise.channels.size());
   bool larger = false;
-  for (std::size_t o = 0; o < now.size.size(); ++o) larger = larger || now.size[o] > least * before.size[o];
+  for (std::size_t o = 0; o < now.size.size(); ++o) larger = larger || now.size[o] > least * one_step.size[o];
   return larger;
 }
 
 }  // namespace
 
 std::optional<FilterEstimate> free_run(const FilterEstimate& estimate, const FreeRunWork& work) {
+  const Sizes one_step = sizes_of(estimate.traces, estimate.data, estimate.noise.channels.size());
   std::optional<FilterEstimate> out = run_freely(estimate, estimate.noise);
-  if (!out || !shows_more(*out, estimate)) return std::nullopt;
-  std::optional<FilterEstimate> fitted = run_freely(settled(*out, work), estimate.noise);
-  if (fitted && log_noise(*fitted) < log_noise(*out)) out = std::move(fitted);
-  return shows_more(*out, estimate) ? out : std::nullopt;
+  if (!out || !shows_more(*out, one_step)) return std::nullopt;
+  const std::optional<FilterEstimate> fitted = fitted_freely(*out, work);
+  std::optional<FilterEstimate> there = fitted ? run_freely(*fitted, estimate.noise) : std::nullopt;
+  if (!there || !(log_noise(*there) < log_noise(*out))) return out;
+  return shows_more(*there, one_step) ? there : std::nullopt;
 }
 
 std::vector<const ScreeningResult*> forces_shown_by(const FilterEstimate& calm, const std::vector<ScreeningResult>& screened) {
@@ -120,10 +115,7 @@ std::vector<const ScreeningResult*> forces_shown_by(const FilterEstimate& calm, 
 }
 
 bool is_explained(const FilterEstimate& calm, const FilterEstimate& after) {
-  double log_ratio = 0.0;
-  for (std::size_t o = 0; o < after.noise.channels.size(); ++o)
-    log_ratio += std::log(after.noise.channels[o].white / calm.noise.channels[o].white);
-  return std::exp(2.0 * log_ratio / static_cast<double>(after.noise.channels.size())) < 1.0 - least_share;
+  return std::exp(2.0 * (log_noise(after) - log_noise(calm))) < 1.0 - least_share;
 }
 
 }  // namespace misfit

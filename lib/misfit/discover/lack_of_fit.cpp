@@ -53,8 +53,8 @@ void append(std::vector<UnknownCurve>& list, std::vector<UnknownCurve> more) {
   std::move(more.begin(), more.end(), std::back_inserter(list));
 }
 
-/// The most significant, corrected for these tests, of those that are worth enough.
-/// `linear`: its memory is; another rate of its own state is then another effect, else only the shape of its corners.
+/// The most significant, corrected for these tests, of those that are worth enough. `linear`: the effect's memory is, so that another rate
+/// of its own state makes it another effect; else that is the shape of its corners.
 std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double tests, bool linear, const Added& added,
                                        const DiscoverOptions& options) {
   std::optional<UnknownCurve> worst;

@@ -6,7 +6,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/watch.h"
-#include "misfit/discover/bindings.h"
+#include "misfit/discover/operating_range.h"
 #include "misfit/discover/refit.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/inference/standard_error.h"

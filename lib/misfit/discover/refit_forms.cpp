@@ -262,13 +262,11 @@ void note_half_a_sample(Refit& out) {
   }
   if (inputs.empty()) return;
   constexpr const char *constant = "constant", *line = "a straight line";
-  out.also = std::string(half_a_sample) +
-             fmt::format(
-                 " ({:.4g} s), as an input seems shifted that the model takes as {} between its samples and that is "
-                 "{} "
-                 "there: if {} {}, write hold = \"{}\" for it under [inputs] of the system instead of adding this effect",
-                 half, straight ? line : constant, straight ? constant : line, join_words(inputs),
-                 inputs.size() == 1 ? "is one" : "are such", straight ? "zero_order" : "first_order");
+  out.also = fmt::format(
+      "{} ({:.4g} s), as an input seems shifted that the model takes as {} between its samples and that is {} there: if {} {}, write "
+      "hold = \"{}\" for it under [inputs] of the system instead of adding this effect",
+      half_a_sample, half, straight ? line : constant, straight ? constant : line, join_words(inputs),
+      inputs.size() == 1 ? "is one" : "are such", straight ? "zero_order" : "first_order");
 }
 
 bool free_drifts(const RefitWork& work, Refit& out) {

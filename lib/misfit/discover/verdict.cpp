@@ -7,8 +7,8 @@
 #include "misfit/core/display.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
-#include "misfit/discover/bindings.h"
 #include "misfit/discover/candidate_model.h"
+#include "misfit/discover/operating_range.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/evaluator.h"
@@ -200,8 +200,8 @@ std::optional<std::string> hardly_reached(const FilterEstimate& estimate) {
   constexpr double least = 0.02, at_the_limit = 0.99;
   const BoundEffect& effect = estimate.model.effects.back();
   const EffectSpec& spec = effect.effect->spec();
-  const auto limit = std::find_if(spec.coefficients.begin(), spec.coefficients.end(),
-                                  [](const CoefficientSpec& c) { return std::string_view(c.scan.over).ends_with("|/step"); });
+  const auto limit =
+      std::find_if(spec.coefficients.begin(), spec.coefficients.end(), [](const CoefficientSpec& c) { return is_of_a_rate(c.scan); });
   if (limit == spec.coefficients.end() || spec.states.empty()) return std::nullopt;
   const Parameter& p = estimate.model.parameters[effect.coefficients[limit - spec.coefficients.begin()].parameter];
   Evaluator evaluator(estimate.forced.model);

@@ -70,6 +70,9 @@ struct ScanSpec {
   /// narrower than sqrt(π/2) times the filter's standard error of that quantity: the filter linearises at one point, and of a corner that
   /// is sharper than its state is known it would find too small a strength.
   bool smooths = false;
+  /// In a system of more states the first value alone is tested, and a fixed shape stays fixed: estimated at each of the many places there,
+  /// it would cost minutes. 0: in any system all of them.
+  int most_states = 0;
 
   [[nodiscard]] constexpr bool is_frequency() const { return count < 0; }
   [[nodiscard]] constexpr bool is_scanned() const { return count != 0; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/column_header.h"
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/text.h"
@@ -134,10 +135,11 @@ class Reader {
   /// Where the study maps no column to it and none is called t: one that is called time, as misfit init would take it.
   [[nodiscard]] ColumnMap map_of_time() const {
     if (header("t") != "t" || table_.find("t") != nullptr) return study_.columns;
-    for (const char* name : {"time", "time_s", "t_s", "time_ms", "t_ms", "Time", "TIME"}) {
-      if (table_.find(name) != nullptr) return {{{"t", name}}};
-    }
-    return study_.columns;
+    const auto time = std::find_if(table_.columns.begin(), table_.columns.end(), [](const Column& column) {
+      const std::string name = read_header(column.name).name;
+      return is_called_time(name) && !may_be_temperature(name);
+    });
+    return time == table_.columns.end() ? study_.columns : ColumnMap{{{"t", time->name}}};
   }
 
   void read_time() {

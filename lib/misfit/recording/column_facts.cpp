@@ -8,28 +8,12 @@
 #include <set>
 #include <string_view>
 
+#include "misfit/core/column_header.h"
 #include "misfit/core/text.h"
 
 namespace misfit {
 namespace {
 
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
-}
-
-std::string without_number(std::string name) {
-  while (!name.empty() && ((name.back() >= '0' && name.back() <= '9') || name.back() == '_')) name.pop_back();
-  return name;
-}
-
-/// The name, or the name with a number behind it ("u1"), is among the words.
-template <std::size_t N>
-bool is_called(const std::string& name, const std::array<std::string_view, N>& words) {
-  return std::find(words.begin(), words.end(), without_number(lower_case(name))) != words.end();
-}
-
-constexpr std::array<std::string_view, 8> time_words = {"t", "time", "zeit", "timestamp", "sec", "seconds", "tijd", "temps"};
 constexpr std::array<std::string_view, 38> input_words = {
     "u",          "in",         "input",    "force",   "torque",   "voltage", "cmd",      "command", "ref",     "setpoint",
     "valve",      "pump",       "drive",    "motor",   "throttle", "heater",  "power",    "pwm",     "control", "stimulus",
@@ -150,8 +134,6 @@ std::vector<std::string> limit_remarks(const std::string& header, const std::vec
   return out;
 }
 
-bool is_called_time(const std::string& name) { return is_called(name, time_words); }
-bool may_be_temperature(const std::string& name) { return name != "t" && without_number(lower_case(name)) == "t"; }
 bool is_called_input(const std::string& name) {
   const auto before = name.rfind('_');
   return is_called(name, input_words) || is_weather(name) ||

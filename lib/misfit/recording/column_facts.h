@@ -29,8 +29,6 @@ namespace misfit {
 [[nodiscard]] bool is_smooth(const std::vector<double>& values);
 
 // By name, case and a number behind it ("u1") aside.
-[[nodiscard]] bool is_called_time(const std::string& name);
-[[nodiscard]] bool may_be_temperature(const std::string& name);  ///< "T", "T1", "t_2"
 [[nodiscard]] bool is_called_input(const std::string& name);
 /// "t_in" and "t_out": two ends of something.
 [[nodiscard]] bool are_called_in_and_out(const std::string& in, const std::string& out);

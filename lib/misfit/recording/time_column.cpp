@@ -1,5 +1,6 @@
 #include "misfit/recording/time_column.h"
 
+#include "misfit/core/column_header.h"
 #include "misfit/core/units.h"
 #include "misfit/recording/column_facts.h"
 

@@ -15,7 +15,7 @@
 #include "misfit/show/error_changes.h"
 #include "misfit/show/rows.h"
 #include "misfit/show/verdict_estimates.h"
-#include "misfit/show/verdict_evidence.h"
+#include "misfit/show/verdict_ladder.h"
 
 namespace misfit {
 namespace {
@@ -101,14 +101,6 @@ class VerdictBuilder {
     const auto& doubts = effects_added_ ? in_.ladder->rungs.back().doubts : fit_ != nullptr ? fit_->doubts : std::nullopt;
     if (doubts) out_.doubts = *doubts;
   }
-  /// "in the last model tau ends at its bound, 0.01 s, and …"; empty: nothing is doubtful there.
-  [[nodiscard]] std::string doubts_in_words() const {
-    constexpr std::size_t most = 2;
-    if (out_.doubts.empty()) return "";
-    const std::vector<std::string> first(out_.doubts.begin(), out_.doubts.begin() + std::min(most, out_.doubts.size()));
-    return "in the last model " + join_words(first) + ", so that what was added may stand for something else";
-  }
-
   /// The trim before and after what was added, with the 95 % interval of the last one and what the references say.
   void add_trim() {
     const Rung* last = effects_added_ ? &in_.ladder->rungs.back() : nullptr;
@@ -139,7 +131,8 @@ class VerdictBuilder {
     const ForceMap* after = map_after(map);
     const std::string place = map.sentence + " (" + p_equals(map.p_corrected) + ")";
     if (after == nullptr) return as_sentence(place);
-    return as_sentence((first ? "without " + names_added() + ", " : "") + place + "; in the last model " + p_equals(after->p_corrected));
+    return as_sentence((first ? "without " + names_added(*in_.ladder) + ", " : "") + place + "; in the last model " +
+                       p_equals(after->p_corrected));
   }
   /// The most significant place of each port that has one; empty: the most significant map has none.
   [[nodiscard]] std::string where_it_fails(const std::vector<ForceMap>& maps) const {
@@ -266,7 +259,7 @@ class VerdictBuilder {
     sentence += values + " (" + p_equals(best.p_value) + ")";
     if (best.also) sentence += "; " + *best.also;
     if (const std::string change = effects_added_ ? change_by_ladder() : ""; !change.empty())
-      sentence += "; with " + names_added() + " " + change;
+      sentence += "; with " + names_added(*in_.ladder) + " " + change;
     say(best.group.size() > 1 ? VerdictKind::several_possible : VerdictKind::missing, sentence, command("add", best.effect));
   }
   /// The random force that the refit with the candidate leaves.
@@ -397,71 +390,14 @@ class VerdictBuilder {
     }
     return out;
   }
-  /// What was added: all of it, or that of which the likelihood says so.
-  [[nodiscard]] std::vector<std::string> added_names(std::optional<Evidence> of = std::nullopt) const {
-    std::vector<std::string> names;
-    const bool remains = in_.discovery == nullptr || in_.discovery->outcome != SearchOutcome::none_missing;
-    for (const Rung& rung : in_.ladder->rungs) {
-      if (!rung.added.empty() && (!of || evidence_for(rung, remains) == *of)) names.push_back(added_in_words(rung, *in_.ladder));
-    }
-    return names;
-  }
-  /// With what was added an RMS error is larger, and none is smaller.
-  [[nodiscard]] bool gets_worse() const {
-    constexpr double hardly = 3.0;  // [%]
-    bool rises = false, falls = false;
-    for (const ErrorChange& e : out_.errors) {
-      if (e.kind != ErrorKind::rms_error || e.within_sigma()) continue;
-      rises = rises || e.per_cent().value_or(0.0) > hardly;
-      falls = falls || e.per_cent().value_or(0.0) < 0.0;
-    }
-    return rises && !falls;
-  }
-  /// Of several rungs the first that no test accepted by itself: what came after it was chosen beside it. nullptr: there is none.
-  [[nodiscard]] const Rung* begun_with() const {
-    if (in_.ladder->rungs.size() < 3) return nullptr;
-    const auto found =
-        std::find_if(in_.ladder->rungs.begin(), in_.ladder->rungs.end(), [](const Rung& r) { return r.remained.has_value(); });
-    return found == in_.ladder->rungs.end() ? nullptr : &*found;
-  }
-  [[nodiscard]] std::string names_added() const { return join_words(added_names()); }
-
-  /// "a was missing: with all that was added the error falls; b was added and explains no more than chance does; ", and what comes behind.
+  /// What was added, in clauses, and what comes behind.
   void added(const std::string& rest, const std::string& next, VerdictKind kind = VerdictKind::effect_added) {
-    const auto needed = added_names(Evidence::needed), untested = added_names(Evidence::untested), chance = added_names(Evidence::chance);
-    const auto worse = added_names(Evidence::predicts_worse), a_part = added_names(Evidence::a_part);
-    std::vector<std::string> parts;
-    const auto part = [&](const std::vector<std::string>& names, const char* of_one, const char* of_several) {
-      if (!names.empty()) parts.push_back(join_words(names) + (names.size() == 1 ? of_one : of_several));
-    };
-    const bool doubtful = !out_.doubts.empty() || begun_with() != nullptr, rises = gets_worse();
-    part(needed,
-         rises      ? " was added"
-         : doubtful ? " describes what was missing"
-                    : " was missing",
-         rises      ? " were added"
-         : doubtful ? " describe what was missing"
-                    : " were missing");
-    part(added_names(Evidence::of_the_hold), " is half a sampling interval late: it is the hold of an input that is wrong, not the model",
-         " are half a sampling interval late: it is the hold of an input that is wrong, not the model");
-    part(a_part, " explains a part of what is missing", " explain a part of what is missing");
-    part(untested, " was added, and no likelihood compares it with the model before",
-         " were added, and no likelihood compares them with the models before");
-    part(worse, " was added, and what is held out is predicted worse with it",
-         " were added, and what is held out is predicted worse with them");
-    part(chance, " was added and explains no more than chance does", " were added and explain no more than chance does");
-    if (const std::string change = change_by_ladder(); !change.empty() && parts.size() > (chance.empty() ? 0U : 1U)) {
-      const char* with = parts.size() > 1 ? "all that was added" : added_names().size() == 1 ? "it" : "them";
-      parts.front() += fmt::format(": with {} {}", with, change);
-    }
-    parts.push_back(rest);
-    if (const std::string doubts = doubts_in_words(); !doubts.empty()) parts.push_back(doubts);
-    if (const Rung* first = begun_with())
-      parts.push_back(added_in_words(*first, *in_.ladder) +
-                      " was begun with though by itself it left a lack of fit, so that it may stand for something else");
-    say(kind, fmt::format("{}", fmt::join(parts, "; ")), next);
-    const std::string& first = parts.front();
-    out_.sentence.replace(0, 1, first, 0, 1);  // names of effects keep their small letters
+    const bool remains = in_.discovery == nullptr || in_.discovery->outcome != SearchOutcome::none_missing;
+    std::vector<std::string> clauses = added_in_clauses({*in_.ladder, out_.errors, out_.doubts, remains, change_by_ladder()});
+    clauses.push_back(rest);
+    for (std::string& doubt : doubts_in_clauses(*in_.ladder, out_.doubts)) clauses.push_back(std::move(doubt));
+    say(kind, fmt::format("{}", fmt::join(clauses, "; ")), next);
+    out_.sentence.replace(0, 1, clauses.front(), 0, 1);  // names of effects keep their small letters
   }
 
   const VerdictInput& in_;

@@ -37,7 +37,7 @@ class ModelLadder {
   /// own model.
   std::vector<std::filesystem::path> remove(const std::string& asked);
 
-  /// Notes of a curve of unknown form, as effect_at() says it, that it gains too little beside the last rung's model, and why.
+  /// Notes of what was added and taken off again, as effect_at() says it, that it gains too little beside the last rung's model, and why.
   void gained_too_little(const std::string& effect, const std::string& why);
 
   /// From now on a rung's fit has a time limit where nobody gives one (usual_limit()): nobody waits for it.

@@ -165,8 +165,6 @@ class Extension {
 
   /// Of a rung that was added tentatively; empty: it stays.
   [[nodiscard]] std::string why_not_kept(const Rung& rung) const {
-    std::string too_little = why_too_little(rung.actual_drop, rung.held_out_gain, parameters_added(rung), families_);
-    if (!too_little.empty()) return too_little;
     const auto parent =
         std::find_if(ladder_.ladder().rungs.begin(), ladder_.ladder().rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
     if (parent == ladder_.ladder().rungs.end()) return "";

@@ -280,7 +280,7 @@ void describe_estimates(const FilterEstimate& estimate, Fit& fit) {
 
 /// A search with the weak priors that keep it regular ends with such parameters where it began, or where chance took them. Their sigma
 /// would be that of those priors: there is none.
-void warn_without_effect(const FilterEstimate& estimate, Fit& fit) {
+void warn_of_undetermined(const FilterEstimate& estimate, Fit& fit) {
   Eigen::VectorXd measured = Eigen::VectorXd::Zero(estimate.covariance.rows());
   for (const auto& jacobian : estimate.jacobians) measured += jacobian.J.colwise().squaredNorm().transpose();
   const Eigen::VectorXd stated = parameter_priors(estimate.model).padded(estimate.covariance.rows()).precision;
@@ -300,7 +300,7 @@ void warn_without_effect(const FilterEstimate& estimate, Fit& fit) {
 /// [s] The longest of the recordings.
 double longest_of(const FilterEstimate& estimate) {
   double longest = 0.0;
-  for (const FilterData& data : estimate.data) longest = std::max(longest, data.signals->t.back() - data.signals->t.front());
+  for (const FilterData& data : estimate.data) longest = std::max(longest, data.signals->seconds());
   return longest;
 }
 
@@ -340,7 +340,7 @@ Fit filter_fit(const FilterEstimate& estimate, int threads) {
   if (validated > 0) fit.validation_loglik = estimate.validation_loglik;
   if (estimate.covariance.size() > 0) {
     describe_estimates(estimate, fit);
-    warn_without_effect(estimate, fit);
+    warn_of_undetermined(estimate, fit);
   }
   warn_of_collinearity(estimate.model, fit.covariance, fit);
   warn_beyond_recording(estimate, fit);

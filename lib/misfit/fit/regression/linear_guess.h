@@ -3,15 +3,9 @@
 #include <string>
 #include <vector>
 
-namespace misfit {
+#include "misfit/fit/regression/window_search.h"
 
-/// What may drive an output.
-struct GuessDriver {
-  std::vector<double> values;  ///< as long as t; NaN: missing
-  bool smooth = false;         ///< measured: straight between samples; else held until the next
-  bool output = false;         ///< another output: taken only if it explains much
-  bool named = false;          ///< by the user: in the model unless it is constant
-};
+namespace misfit {
 
 /// One output with what may drive it; NaN: missing.
 struct GuessData {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Output error of linear models over short windows: what linear_guess.cpp searches with; not for other files.
+// Output error of linear models over short windows: what window_search.cpp solves; not for other files.
 //
 // Over a window of the record y^(n) = −Σ a_j y^(j) + Σ b_i u_i + c is solved exactly; for given poles the solution is linear in b, c and
 // the state at the window's begin, which is projected out. White measurement noise does not bias it, as it does a regression on past values
