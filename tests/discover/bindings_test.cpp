@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/model/declared_texts.h"
 #include "tests/model/requests.h"
 
 namespace misfit {
@@ -72,6 +73,33 @@ TEST(Bindings, AnInputMultipliesStatesAndDifferencesOfLevels) {
   EXPECT_THAT(enumerate_bindings(registry().effect("bilinear_exchange").spec(), tank),
               ElementsAre(Roles{}, Roles{{"input", "u"}, {"level", "x1"}, {"other", "outside"}, {"port", "dx1/dt"}}))
       << "an input may be the other level, but does not multiply itself";
+}
+
+/// A reaction whose rate stands in the balances of mass and of heat, beside parameters of one of them and one that is known.
+TEST(Bindings, AFreeParameterOfSeveralEquationsMayVaryWithEachStateAndInput) {
+  const auto systems = registry_with(R"toml(
+[states]
+c = { unit = "-" }
+T = { unit = "K" }
+[inputs]
+cool = { unit = "K" }
+[parameters]
+k = { unit = "1/s", value = 0.1, free = true }
+flow = { unit = "1/s", value = 0.1 }
+heat = { unit = "K", value = 200.0, free = true }
+[quantities]
+reaction = { unit = "1/s", formula = "k*c" }
+[equations]
+c = "flow*(1 - c) - reaction"
+T = "flow*(cool - T) + heat*reaction"
+[outputs]
+c = { unit = "-", noise = 0.01 }
+T = { unit = "K", noise = 0.1 }
+)toml");
+  const auto with = [](const char* quantity) { return Roles{{"parameter", "k"}, {"with", quantity}}; };
+  EXPECT_THAT(enumerate_bindings(systems->effect("varying_parameter").spec(), systems->system("text").make({})->spec()),
+              ElementsAre(with("c"), with("T"), with("cool")));
+  EXPECT_THAT(bindings("varying_parameter", "test_oscillator"), testing::IsEmpty());
 }
 
 TEST(Bindings, AnInputThatAnOutputsFormulaReadsIsAPlaceOfItsOwn) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "tests/fit/planar_model.h"
@@ -94,9 +95,52 @@ TEST(OwnStates, DoNotLookAtWhatIsHeldOut) {
   EXPECT_EQ(before.sigma, after.sigma);
 }
 
-TEST(OwnStates, OfPlayAreTakenAsKnown) {
+TEST(OwnStates, OfPlayAreUncertainByNoMoreThanTheyMove) {
   const Swing swing(testing_models::effect("backlash", {{"displacement", "x"}, {"port", "torque"}}));
-  EXPECT_EQ(swing.own().sigma[0], 0.0);
+  const OwnStates own = swing.own();
+  EXPECT_GT(own.sigma[0], 0.0);
+  EXPECT_LE(own.sigma[0], own.z.maxCoeff() - own.z.minCoeff());
+  EXPECT_LT(own.z.cwiseAbs().maxCoeff(), 1.0) << "the swing less the play";
+}
+
+/// A surface that follows a square wave of 10 deg at 60 deg/s and is 5 deg away from its command when the recording begins.
+TEST(OwnStates, OfALimitedRateBeginWhereTheMotionIsNotAtTheCommand) {
+  constexpr double step = 0.02, limit = 60.0 * std::numbers::pi / 180.0, command = 10.0 * std::numbers::pi / 180.0;
+  const auto systems = testing_models::registry_with(R"toml([states]
+x = { unit = "rad" }
+[inputs]
+u = { unit = "rad", hold = "zero_order" }
+[parameters]
+tau = { unit = "s", value = 0.001, free = true }
+[equations]
+x = "(u - x)/tau"
+[outputs]
+x = { unit = "rad", noise = 0.001 }
+)toml");
+  Model model =
+      assemble(testing_models::request_of("text", {testing_models::effect("rate_limit", {{"input", "u"}, {"port", "u"}})}), *systems);
+  for (Parameter& p : model.parameters) {
+    if (p.name == "rate_limit") p.value = limit;
+  }
+  Signals signals;
+  signals.t = testing_planar::even_times(600, step);
+  signals.measured = {{"x", "rad", {}, 0.0}};
+  signals.inputs = {{"u", "rad", {}, 0.0}};
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.001);
+  double x = command / 2.0;
+  for (double t : signals.t) {
+    const double u = std::fmod(t, 1.6) < 0.8 ? command : -command;
+    signals.measured[0].values.push_back(x + noise(random));
+    signals.inputs[0].values.push_back(u);
+    x += std::clamp(u - x, -limit * step, limit * step);
+  }
+  const ReconstructedStates states = reconstruct_states(model, signals);
+  const Eigen::Index first = std::find(states.ok.begin(), states.ok.end(), true) - states.ok.begin();
+  const OwnStates own = own_states_along(model, signals, states);
+  EXPECT_GT(own.sigma[0], 0.001) << "it is to be estimated";
+  EXPECT_NEAR(own.start[0], states.x(first, 0), 2.0 * own.sigma[0]);
+  for (Eigen::Index i = 200; i < 590; i += 13) EXPECT_NEAR(own.z(i, 0), signals.measured[0].values[static_cast<std::size_t>(i)], 0.03) << i;
 }
 
 TEST(OwnStates, OfAShortRecordingAreAtRest) {

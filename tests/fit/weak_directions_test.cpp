@@ -169,6 +169,22 @@ TEST(WeakDirections, AParameterAtItsBoundIsNamedWithItsBound) {
   EXPECT_FALSE(not_needed.doubts.has_value());
 }
 
+TEST(WeakDirections, ALagThatVanishesBesideAnEffectWithALongerOneIsNoDoubt) {
+  const auto known = testing_room::registry_with(testing_room::warming("tau", "0.001"));
+  Model model = assemble(testing_room::request_of("text", {testing_room::effect("sensor_lag", {{"output", "y"}})}), *known);
+  Parameter& tau = model.parameters[static_cast<std::size_t>(model.find_parameter("tau"))];
+  tau.lower = tau.value;
+  Fit fit;
+  warn_of_collinearity(model, separate(model), fit);
+  EXPECT_THAT(fit.warnings, testing::Contains(testing::AllOf(HasSubstr("tau ends at its bound, 0.001 s"),
+                                                             HasSubstr("sensor_lag takes the place of this lag"))));
+  EXPECT_FALSE(fit.doubts.has_value());
+  tau.lower = tau.value = 100.0;
+  Fit slow;
+  warn_of_collinearity(model, separate(model), slow);
+  EXPECT_EQ(slow.doubts, std::vector<std::string>{"tau ends at its bound, 100 s"}) << "the model's lag has not vanished";
+}
+
 TEST(WeakDirections, AShapeOfEitherSignIsJudgedByItsTypicalSizeNotByItsNearnessToZero) {
   Model model = with_free_mass();
   const Eigen::MatrixXd covariance = separate(model);  // sigma 0.0088

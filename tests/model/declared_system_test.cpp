@@ -342,6 +342,39 @@ TEST(DeclaredDuffing, TakesEffectsOnItsPortsQuantitiesAndInputs) {
   }
 }
 
+/// Arrhenius' reactor: c' = f (1 - c) - k c, T' = f (cool - T) + 200 K k c, with k + 0.002 (T - 300 K).
+TEST(AnEffectOnAParameterOfSeveralEquations, ActsInAllOfThem) {
+  const std::string text = R"toml(
+[states]
+c = { unit = "-" }
+T = { unit = "K" }
+[parameters]
+k = { unit = "1/s", value = 0.1, free = true }
+f = { unit = "1/s", value = 0.05 }
+heat = { unit = "K", value = 200.0, free = true }
+cool = { unit = "K", value = 300.0 }
+[equations]
+c = "f*(1 - c) - k*c"
+T = "f*(cool - T) + heat*k*c"
+[outputs]
+c = { unit = "-", noise = 0.01 }
+T = { unit = "K", noise = 0.1 }
+)toml";
+  const auto systems = registry_with(text);
+  const auto varying = [](const char* parameter) { return effect("varying_parameter", {{"parameter", parameter}, {"with", "T"}}); };
+  Model model = assemble(request_of("text", {varying("k")}), *systems);
+  model.parameters[static_cast<std::size_t>(model.find_parameter("slope"))].value = 0.002;
+  model.parameters[static_cast<std::size_t>(model.find_parameter("middle"))].value = 300.0;
+  Evaluator evaluator(model);
+  const std::vector<double> x = {0.4, 310.0};
+  std::vector<double> dx(2);
+  evaluator.rates(x.data(), nullptr, 0.0, dx.data());
+  constexpr double k = 0.1 + 0.002 * 10.0;
+  EXPECT_NEAR(dx[0], 0.05 * 0.6 - k * 0.4, 1e-12);
+  EXPECT_NEAR(dx[1], -0.05 * 10.0 + 200.0 * k * 0.4, 1e-12);
+  EXPECT_THROW(assemble(request_of("text", {varying("heat")}), *systems), InputError) << "a parameter of one equation is no port";
+}
+
 TEST(DeclaredSystems, KeepStatesInTheirRange) {
   const auto known = registry_with(R"toml(
 [states]

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "tests/model/requests.h"
+#include "tests/model/declared_texts.h"
 
 namespace misfit {
 namespace {
@@ -24,12 +24,12 @@ std::string owner_of(const std::string& coefficient) {
 }
 
 /// Roles without a default: an effect of unknown form has to be told of what it is a curve.
-std::map<std::string, std::string> roles_without_default(const EffectSpec& spec, const ModelRequest& request) {
+std::map<std::string, std::string> roles_without_default(const EffectSpec& spec, const ModelRequest& request, const Registry& systems) {
   std::map<std::string, std::string> out;
   for (const CoefficientSpec& c : spec.coefficients) {
     if (const int role = spec.curve_role(c); role >= 0)
       out[spec.quantities[static_cast<std::size_t>(role)].name] =
-          registry().system(request.system).make(request.options)->spec().quantities.front().name;
+          systems.system(request.system).make(request.options)->spec().quantities.front().name;
   }
   return out;
 }
@@ -40,21 +40,36 @@ struct ModelsWith {
   std::string refusals;
 };
 
+/// Heat that goes from one body to another: a parameter that stands in two equations.
+const std::string two_bodies = R"toml(
+[states]
+warm = { unit = "K" }
+cold = { unit = "K" }
+[parameters]
+over = { unit = "1/s", value = 0.1, free = true }
+[equations]
+warm = "-over*(warm - cold)"
+cold = "over*(warm - cold)"
+[outputs]
+warm = { unit = "K", noise = 0.1 }
+)toml";
+
 ModelsWith models_with(const std::string& key) {
   ModelsWith out;
+  static const std::shared_ptr<Registry> systems = testing_models::registry_with(two_bodies);
   const auto& coefficients = registry().effect(key).spec().coefficients;
   for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), tanks({}), declared("pendulum", {}),
-                              declared("cascaded_tanks", {}), declared("duffing", {})}) {
+                              declared("cascaded_tanks", {}), declared("duffing", {}), declared("text", {})}) {
     ModelRequest alone = request;
     alone.effects = {effect(key)};
-    alone.effects.front().roles = roles_without_default(registry().effect(key).spec(), request);
+    alone.effects.front().roles = roles_without_default(registry().effect(key).spec(), request, *systems);
     for (const auto& c : coefficients) {
       if (c.shared) alone.effects.push_back(effect(owner_of(c.name)));
     }
     alone.curves.clear();
-    for (const auto& [name, of] : curves_without_knots(alone, registry())) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
+    for (const auto& [name, of] : curves_without_knots(alone, *systems)) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
     try {
-      out.models.push_back(assemble(alone, registry()));
+      out.models.push_back(assemble(alone, *systems));
     } catch (const InputError& error) {  // does not suit this system
       out.refusals += "\n  " + request.system + ": " + error.what();
     }

@@ -5,6 +5,7 @@
 #include <set>
 #include <string_view>
 
+#include "misfit/core/lists.h"
 #include "misfit/core/units.h"
 
 namespace misfit {
@@ -151,14 +152,18 @@ std::vector<Roles> times_factors(const std::vector<Roles>& places) {
   return out;
 }
 
-/// Each place whose factor is a state once per other state that may multiply it, each pair once: an input is what sets how strongly a state
-/// acts, and so may another state be (a rate constant and a concentration, a damping that depends on the position). Of small systems: among
-/// the many products of a larger one there is one that looks like whatever is missing (of the velocities of two masses, a square of their
-/// difference).
-std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
+/// Few products of states and inputs are possible. Among the many of a larger system there is one that looks like whatever is missing (of
+/// the velocities of two masses, a square of their difference).
+bool is_small(const SystemSpec& system) {
   constexpr std::size_t most_states = 3;
+  return system.states.size() <= most_states;
+}
+
+/// Each place whose factor is a state once per other state that may multiply it, each pair once: an input is what sets how strongly a state
+/// acts, and so may another state be (a rate constant and a concentration, a damping that depends on the position). Of small systems.
+std::vector<Roles> times_other_states(const std::vector<Roles>& places, const SystemSpec& system) {
   std::vector<Roles> out;
-  if (!suggests_places(system) || system.states.size() > most_states) return out;
+  if (!suggests_places(system) || !is_small(system)) return out;
   std::set<std::array<std::string, 3>> known;
   for (const Roles& place : places) {
     const std::string& factor = place.at("factor");
@@ -195,6 +200,19 @@ std::vector<Roles> times_of_outputs(const SystemSpec& system) {
   std::vector<Roles> out;
   if (!suggests_places(system) || system.outputs.size() < 2) return out;
   for (const OutputSpec& output : system.outputs) out.push_back({{"time_of_output", sample_time_of(output.name)}});
+  return out;
+}
+
+/// Each parameter that is free and a port, once per state and input that it may vary with. Of small systems, as times_other_states().
+std::vector<Roles> varying_parameters(const SystemSpec& system) {
+  std::vector<Roles> out;
+  if (!is_small(system)) return out;
+  for (const PortSpec& port : system.quantity_ports) {
+    const int parameter = index_of(system.constants, port.name);
+    if (parameter < 0 || !system.constants[parameter].free) continue;
+    for (const StateSpec& state : system.states) out.push_back({{"parameter", port.name}, {"with", state.name}});
+    for (const InputSpec& input : system.inputs) out.push_back({{"parameter", port.name}, {"with", input.name}});
+  }
   return out;
 }
 
@@ -236,6 +254,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   std::vector<Roles> out = {{}};
   if (has_role(effect.ports, all_sample_times) && system.inputs.empty()) return {};
   if (has_role(effect.ports, "time_of_output")) return times_of_outputs(system);
+  if (has_role(effect.ports, "parameter")) return varying_parameters(system);
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};
   if (has_role(effect.ports, "port") || has_role(effect.ports, "to_port")) places = natural_ports(system);

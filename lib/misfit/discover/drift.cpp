@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "misfit/core/display.h"
 #include "misfit/core/lists.h"
@@ -14,7 +15,11 @@ namespace {
 struct Drift {
   int parameter;
   const char* of;
+  bool in_time;  ///< else along a quantity that the effect reads
 };
+
+/// Its unit is one per a role's: 1/{of}.
+bool is_along_a_role(const CoefficientSpec& c) { return std::string_view(c.unit).find("/{") != std::string_view::npos; }
 
 std::vector<Drift> drifts_of(const Model& model) {
   std::vector<Drift> out;
@@ -22,7 +27,8 @@ std::vector<Drift> drifts_of(const Model& model) {
   const auto& coefficients = bound.effect->spec().coefficients;
   for (std::size_t c = 0; c < coefficients.size(); ++c) {
     const int parameter = bound.coefficients[c].parameter;
-    if (coefficients[c].drift_of[0] != '\0' && parameter >= 0) out.push_back({parameter, coefficients[c].drift_of});
+    if (coefficients[c].drift_of[0] != '\0' && parameter >= 0)
+      out.push_back({parameter, coefficients[c].drift_of, !is_along_a_role(coefficients[c])});
   }
   return out;
 }
@@ -44,7 +50,8 @@ std::string drifts_in_words(const Model& model, const Eigen::MatrixXd& covarianc
     const Parameter& p = model.parameters[drift.parameter];
     if (!p.free) continue;
     const double sigma = standard_error_of(model, covariance, drift.parameter).value_or(0.0);
-    out += (out.empty() ? "its " : ", its ") + std::string(drift.of) + " drifts by " + in_display_unit(p.value, p.unit, sigma);
+    out += (out.empty() ? "its " : ", its ") + std::string(drift.of) + (drift.in_time ? " drifts by " : " changes by ") +
+           in_display_unit(p.value, p.unit, sigma);
   }
   return out;
 }

@@ -126,6 +126,37 @@ std::optional<double> bound_reached(const Parameter& p) {
   return std::nullopt;
 }
 
+/// Of a time constant of the system that ends at its lower bound: the effect with a memory that does what it did. None where the bound is
+/// not next to nothing beside the longest of that effect's own times.
+std::optional<std::string> what_replaces_lag(const Model& model, int parameter, double bound) {
+  constexpr double next_to_nothing = 0.05;
+  const Parameter& p = model.parameters[parameter];
+  const auto is_time = [](const Parameter& q) { return q.unit == "s"; };
+  if (parameter >= std::ssize(model.system->spec().constants) || !is_time(p) || bound != p.lower) return std::nullopt;
+  for (const BoundEffect& effect : model.effects) {
+    if (effect.effect->spec().states.empty()) continue;
+    for (const BoundCoefficient& c : effect.coefficients) {
+      if (c.parameter < 0 || !is_time(model.parameters[c.parameter])) continue;
+      if (bound <= next_to_nothing * model.parameters[c.parameter].value) return effect.name;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A parameter that ended at a bound, in words; a doubt of what else was estimated unless it is not needed.
+void report_bound(const Model& model, int parameter, double bound, Fit& fit) {
+  const Parameter& p = model.parameters[parameter];
+  const std::string words = p.name + " ends at its bound, " + in_display_unit(bound, p.unit);
+  const std::string what_it_means = ": the best value may lie beyond, and its sigma does not describe an interval there";
+  if (bound == 0.0) {
+    fit.warnings.push_back(words + what_it_means);
+  } else if (const auto effect = what_replaces_lag(model, parameter, bound)) {
+    fit.warnings.push_back(words + ": " + *effect + " takes the place of this lag");
+  } else {
+    fit.add_doubt(words, what_it_means);
+  }
+}
+
 }  // namespace
 
 void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance, Fit& fit) {
@@ -144,15 +175,7 @@ void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance,
     } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
       fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
     }
-    const std::optional<double> bound = bound_reached(p);
-    if (!bound) continue;
-    const std::string words = p.name + " ends at its bound, " + in_display_unit(*bound, p.unit);
-    const std::string what_it_means = ": the best value may lie beyond, and its sigma does not describe an interval there";
-    if (*bound == 0.0) {
-      fit.warnings.push_back(words + what_it_means);  // it is not needed: no doubt of the others
-    } else {
-      fit.add_doubt(words, what_it_means);
-    }
+    if (const std::optional<double> bound = bound_reached(p)) report_bound(model, free[c], *bound, fit);
   }
   if (!prior_only.empty()) fit.facts["prior_only"] = "these data add no information to the prior of " + prior_only;
 }

@@ -28,6 +28,11 @@ Eigen::Index first_known(const ReconstructedStates& states) {
   return known == states.ok.end() ? 0 : known - states.ok.begin();
 }
 
+/// Which of the model's states are the own states of an effect.
+struct Block {
+  Eigen::Index first = 0, size = 0;
+};
+
 struct Recording {
   const Model& model;
   const Signals& signals;
@@ -43,6 +48,7 @@ class Along {
         signals_(recording.signals),
         states_(recording.states),
         inputs_(recording.inputs),
+        evaluator_(model_),
         first_(first_known(states_)),
         at_(Eigen::VectorXd::Zero(model_.states())) {
     set_system_states(first_);
@@ -60,26 +66,73 @@ class Along {
   /// Those with constant A.
   [[nodiscard]] std::vector<Memory> memories() {
     if (memories_.empty()) return {};
-    Evaluator evaluator(model_);
     Slots slots;
     std::vector<double> dx(model_.states()), D(model_.states() * kRowStride);
     std::vector<bool> linear(memories_.size(), true);
     for (Eigen::Index i = first_; i < states_.x.rows(); ++i) {
       if (!states_.ok[i]) continue;
       set_system_states(i);
-      evaluator.linearise_rates({at_.data(), inputs_.at(i), signals_.t[i]}, slots, dx.data(), D.data());
+      evaluator_.linearise_rates({at_.data(), inputs_.at(i), signals_.t[i]}, slots, dx.data(), D.data());
       for (std::size_t m = 0; m < memories_.size(); ++m) linear[m] = linear[m] && take(memories_[m], dx, D, i);
     }
     std::vector<Memory> out;
     for (std::size_t m = 0; m < memories_.size(); ++m) {
       if (linear[m]) out.push_back(memories_[m]);
     }
+    for (std::size_t m = 0; m < memories_.size(); ++m) {
+      if (!linear[m]) nonlinear_.push_back({memories_[m].first, memories_[m].A.rows()});
+    }
     return out;
   }
 
   [[nodiscard]] const Eigen::VectorXd& at_rest() const { return own_; }
+  /// Own states of effects whose dynamics are not linear, as memories() found.
+  [[nodiscard]] const std::vector<Block>& nonlinear() const { return nonlinear_; }
+
+  /// Own states where the nonlinear ones, begun as `start` has them (all own states), follow the motion, and the others stay: from sample
+  /// to sample two exponential Euler steps (Hochbruck and Ostermann 2010, exponential Rosenbrock-Euler), each with the motion and the
+  /// inputs of its middle. They stay while the motion is not known. NaN where they diverge.
+  [[nodiscard]] RowMatrix followed(const Eigen::VectorXd& start) {
+    RowMatrix out = start.transpose().replicate(states_.x.rows(), 1);
+    at_.tail(start.size()) = start;
+    for (Eigen::Index i = first_; i + 1 < out.rows(); ++i) {
+      if (states_.ok[i] && states_.ok[i + 1]) {
+        for (const double share : {0.25, 0.75}) step(i, share);
+      }
+      out.row(i + 1) = at_.tail(start.size()).transpose();
+    }
+    return out;
+  }
 
  private:
+  using Derivatives = Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>>;
+  [[nodiscard]] Derivatives derivatives(const std::vector<double>& D) const {
+    return {D.data(), model_.states(), model_.states(), Eigen::OuterStride<>(kRowStride)};
+  }
+
+  /// Half of the way from a sample to the next, with what is at a share of it.
+  void step(Eigen::Index sample, double share) {
+    const Eigen::Index system = model_.system_states();
+    const double length = signals_.t[sample + 1] - signals_.t[sample];
+    at_.head(system) = ((1.0 - share) * states_.x.row(sample).head(system) + share * states_.x.row(sample + 1).head(system)).transpose();
+    std::vector<double> u(model_.inputs());
+    for (int j = 0; j < model_.inputs(); ++j)
+      u[j] = input_within(inputs_.recorded.hold[j], inputs_.at(sample), inputs_.at(sample + 1), j, share, length).value;
+    Slots slots;
+    std::vector<double> dx(model_.states()), D(model_.states() * kRowStride);
+    evaluator_.linearise_rates({at_.data(), {u.data(), &inputs_.recorded}, signals_.t[sample] + share * length}, slots, dx.data(),
+                               D.data());
+    for (const Block& block : nonlinear_) at_.segment(block.first, block.size) += increment(block, dx, D, 0.5 * length);
+  }
+
+  /// h phi_1(A h) z': the last column of the exponential of [A z'; 0 0] h.
+  [[nodiscard]] Eigen::VectorXd increment(const Block& block, const std::vector<double>& dx, const std::vector<double>& D, double h) const {
+    Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(block.size + 1, block.size + 1);
+    augmented.topLeftCorner(block.size, block.size) = h * derivatives(D).block(block.first, block.first, block.size, block.size);
+    augmented.topRightCorner(block.size, 1) = h * Eigen::Map<const Eigen::VectorXd>(dx.data() + block.first, block.size);
+    return Eigen::MatrixXd(augmented.exp()).topRightCorner(block.size, 1);
+  }
+
   void set_system_states(Eigen::Index sample) {
     at_.head(model_.system_states()) = states_.x.row(sample).head(model_.system_states()).transpose();
   }
@@ -87,8 +140,7 @@ class Along {
   /// False if the effect's own dynamics are not linear with the A of the first sample.
   bool take(Memory& memory, const std::vector<double>& dx, const std::vector<double>& D, Eigen::Index sample) const {
     const Eigen::Index size = memory.A.rows();
-    const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> rows(D.data(), model_.states(), model_.states(),
-                                                                    Eigen::OuterStride<>(kRowStride));
+    const Derivatives rows = derivatives(D);
     const Eigen::MatrixXd A = rows.block(memory.first, memory.first, size, size);
     if (sample == first_) memory.A = A;
     if (!((A - memory.A).norm() <= constant * memory.A.norm())) return false;
@@ -104,9 +156,11 @@ class Along {
   const Signals& signals_;
   const ReconstructedStates& states_;
   const InputTable& inputs_;
+  Evaluator evaluator_;
   Eigen::Index first_;
   Eigen::VectorXd at_, own_;
   std::vector<Memory> memories_;
+  std::vector<Block> nonlinear_;
 };
 
 /// d' = A d - r' from sample to sample; at rest again after samples that are not known.
@@ -159,17 +213,16 @@ Eigen::VectorXd regressors(const Recording& recording, Eigen::Index sample) {
   return Eigen::Map<const Eigen::VectorXd>(out.data(), std::ssize(out));
 }
 
-/// The departure that the motion of `sample` goes with, by what it goes with at the others; none if these are too few.
-std::optional<Eigen::VectorXd> predicted(const Eigen::MatrixXd& known, const RowMatrix& values, const Eigen::VectorXd& at) {
+/// Least squares of `values` on what is `known` at the same samples; none if these are too few.
+std::optional<Eigen::MatrixXd> regression(const Eigen::MatrixXd& known, const RowMatrix& values) {
   constexpr Eigen::Index samples_per_coefficient = 5;
   if (known.rows() < samples_per_coefficient * known.cols()) return std::nullopt;
   Eigen::VectorXd scale = known.colwise().norm();
   for (double& s : scale) s = s > 0.0 ? s : 1.0;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(known * scale.cwiseInverse().asDiagonal());
   qr.setThreshold(1e-6);
-  const Eigen::MatrixXd coefficients = qr.solve(Eigen::MatrixXd(values));
-  const Eigen::VectorXd out = coefficients.transpose() * scale.cwiseInverse().cwiseProduct(at);
-  return out.allFinite() ? std::optional<Eigen::VectorXd>(out) : std::nullopt;
+  const Eigen::MatrixXd out = scale.cwiseInverse().asDiagonal() * qr.solve(Eigen::MatrixXd(values));
+  return out.allFinite() ? std::optional<Eigen::MatrixXd>(out) : std::nullopt;
 }
 
 /// One effect's memory along the motion, written into its columns.
@@ -179,16 +232,17 @@ void fill(const Memory& memory, const Recording& recording, OwnStates& out) {
   const std::vector<Eigen::Index> samples = settled(memory, signals, states);
   if (samples.empty()) return;
   const RowMatrix begun_at_rest = departures(memory, recording, Eigen::VectorXd::Zero(size));
-  const Eigen::VectorXd beginning = regressors(recording, first);
+  const Eigen::VectorXd at_first = regressors(recording, first);
   RowMatrix values(samples.size(), size);
-  Eigen::MatrixXd known(samples.size(), beginning.size());
+  Eigen::MatrixXd known(samples.size(), at_first.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const Eigen::Index row = k;
     values.row(row) = begun_at_rest.row(samples[k]);
     known.row(row) = regressors(recording, samples[k]).transpose();
   }
   const Eigen::VectorXd sigma = (values.colwise().squaredNorm() / static_cast<double>(values.rows())).cwiseSqrt().transpose();
-  Eigen::VectorXd start = predicted(known, values, beginning).value_or(Eigen::VectorXd::Zero(size));
+  const std::optional<Eigen::MatrixXd> coefficients = regression(known, values);
+  Eigen::VectorXd start = coefficients ? Eigen::VectorXd(coefficients->transpose() * at_first) : Eigen::VectorXd::Zero(size);
   constexpr double farthest = 3.0;  // sigmas: no extrapolation
   start = start.cwiseMin(farthest * sigma).cwiseMax(-farthest * sigma);
   const RowMatrix d = departures(memory, recording, start);
@@ -199,6 +253,58 @@ void fill(const Memory& memory, const Recording& recording, OwnStates& out) {
   out.sigma.segment(at, size) = sigma;
   for (Eigen::Index j = 0; j < model.system_states(); ++j) {
     if (!states.shown[j]) out.by_hidden_states.block(at, j, size, 1) = memory.rest_by_state.col(j);
+  }
+}
+
+/// Samples known and of the fit in the later half of the recording, or of what follows the last gap in it.
+std::vector<Eigen::Index> later_half(const Recording& recording) {
+  const auto& [model, signals, states, inputs] = recording;
+  std::vector<Eigen::Index> out;
+  const Eigen::Index first = first_known(states);
+  const double middle = 0.5 * (signals.t[first] + signals.t.back());
+  for (Eigen::Index i = first; i < states.x.rows(); ++i) {
+    if (states.ok[i] && !signals.held_out(i) && signals.t[i] >= middle) out.push_back(i);
+  }
+  return out;
+}
+
+/// What the motion at the first sample says of own states: the prediction from the motion, learnt from `values` (samples × own states) at
+/// `samples`, and its largest error there, for a recording may begin where it errs most (on the way to a new command). Their mean and
+/// largest departure from it where these are too few.
+struct Beginning {
+  Eigen::VectorXd start, sigma;
+};
+
+Beginning beginning(const Recording& recording, const std::vector<Eigen::Index>& samples, const RowMatrix& values) {
+  const Eigen::VectorXd at = regressors(recording, first_known(recording.states));
+  Eigen::MatrixXd known(samples.size(), at.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) known.row(static_cast<Eigen::Index>(k)) = regressors(recording, samples[k]).transpose();
+  const Eigen::RowVectorXd mean = values.colwise().mean();
+  const RowMatrix departures = values.rowwise() - mean;
+  const auto largest = [](const RowMatrix& rows) -> Eigen::VectorXd { return rows.cwiseAbs().colwise().maxCoeff().transpose(); };
+  const std::optional<Eigen::MatrixXd> coefficients = regression(known, departures);
+  if (!coefficients) return {mean.transpose(), largest(departures)};
+  return {mean.transpose() + coefficients->transpose() * at, largest(departures - known * *coefficients)};
+}
+
+/// Memories that are not linear, written into their columns.
+void follow(Along& along, const Recording& recording, OwnStates& out) {
+  const std::vector<Eigen::Index> samples = later_half(recording);
+  if (along.nonlinear().empty() || samples.empty()) return;
+  const RowMatrix begun_at_rest = along.followed(out.start);
+  for (const Block& block : along.nonlinear()) {
+    const Eigen::Index at = block.first - recording.model.system_states();
+    const RowMatrix values = begun_at_rest(samples, Eigen::seqN(at, block.size));
+    if (!values.allFinite()) return;
+    const Beginning begun = beginning(recording, samples, values);
+    const Eigen::VectorXd least = values.colwise().minCoeff().transpose(), largest = values.colwise().maxCoeff().transpose();
+    out.start.segment(at, block.size) = begun.start.cwiseMax(least).cwiseMin(largest);  // no extrapolation
+    out.sigma.segment(at, block.size) = begun.sigma.cwiseMin(largest - least);
+  }
+  const RowMatrix z = along.followed(out.start);
+  for (const Block& block : along.nonlinear()) {
+    const Eigen::Index at = block.first - recording.model.system_states();
+    if (z.middleCols(at, block.size).allFinite()) out.z.middleCols(at, block.size) = z.middleCols(at, block.size);
   }
 }
 
@@ -215,6 +321,7 @@ OwnStates own_states_along(const Model& model, const Signals& signals, const Rec
   out.start = along.at_rest();
   out.z.rowwise() = out.start.transpose();
   for (const Memory& memory : along.memories()) fill(memory, recording, out);
+  follow(along, recording, out);
   return out;
 }
 

@@ -22,9 +22,10 @@ struct OwnStates {
 /// begun at rest; what is remembered of that beginning is left out (three times the slowest time constant, half of the recording at most),
 /// as are held-out samples. The departure at the first sample is the least-squares prediction from states, their derivatives and inputs
 /// there, learnt from the other samples; its sigma is the RMS of all departures, since it was computed with the effect's parameters as they
-/// are now. What the memory follows may depend on a state that no channel shows, whose start is not known: dr/dx = -A^-1 db/dx. Other own
-/// states (play inside its clearance, forces) are at rest (set_own_states_at_rest()) and taken as known. Of `states` only those of the
-/// system are read.
+/// are now. What the memory follows may depend on a state that no channel shows, whose start is not known: dr/dx = -A^-1 db/dx.
+/// Memories that are not linear (a limited rate, play inside its clearance) are integrated along the same states; that of the first sample
+/// is the least-squares prediction, too, learnt from the later half of the recording, three times as uncertain as it errs there, within
+/// what it visits. Forces are at rest (set_own_states_at_rest()) and taken as known. Of `states` only those of the system are read.
 [[nodiscard]] OwnStates own_states_along(const Model& model, const Signals& signals, const ReconstructedStates& states);
 
 }  // namespace misfit

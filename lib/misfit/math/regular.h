@@ -19,6 +19,15 @@ T tanh_over(const T& s) {
   return tanh(r) / r;
 }
 
+/// (exp(x) − 1)/x, 1 at 0.
+template <class T>
+T expm1_over(const T& x) {
+  using std::exp;
+  constexpr double small = 1e-3;  // the next term of the series is x⁴/120: 8e-15
+  if (value_of(x) > -small && value_of(x) < small) return 1.0 + x / 2.0 * (1.0 + x / 3.0 * (1.0 + x / 4.0));
+  return (exp(x) - 1.0) / x;
+}
+
 /// |x| rounded over `width` > 0: x tanh(x/width); below |x| by less than 0.28 width.
 template <class T, class W>
 T smooth_abs(const T& x, const W& width) {

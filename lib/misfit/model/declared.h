@@ -10,8 +10,8 @@ namespace misfit {
 
 /// A system declared as text (TOML); its keys: declared_keys.cpp, misfit help system. Formulas: misfit/formula; units are checked through
 /// them, SI and radians. Every equation also has the dynamic port dSTATE/dt, whose conjugate is the state. Every input and quantity is a
-/// quantity port as well; an input before such changes is the quantity NAME_given. An output that is a formula of an input
-/// or quantity sees what effects add to it. InputError with file, line and column.
+/// quantity port as well; an input before such changes is the quantity NAME_given. So is every parameter that stands in several equations.
+/// An output that is a formula of an input or quantity sees what effects add to it. InputError with file, line and column.
 [[nodiscard]] SystemType declared_system(const std::string& text, const std::string& file, const std::string& key);
 
 /// Adds a declared system that is part of the program: the list that misfit_add_effects generates calls it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
@@ -54,7 +55,8 @@ class Compiler {
     n.nx = int_size(spec().states);
     n.nu = int_size(spec().inputs);
     n.nk = int_size(spec().constants);
-    n.np = n.nu + int_size(spec().quantities);
+    varied_ = parameters_of_several_equations();
+    n.np = n.nu + int_size(spec().quantities) + int_size(varied_);
     own_ports_ = int_size(spec().dynamic_ports);
     n.nf = own_ports_ + n.nx;
     for (const auto& state : spec().states) {
@@ -65,6 +67,10 @@ class Compiler {
     }
     for (int i = 0; i < n.nx; ++i) state_nodes_.push_back(state_node(i));
     for (int i = 0; i < n.nu; ++i) input_nodes_.push_back(graph().add(graph().leaf(n.u(i)), graph().leaf(n.P(i))));
+    for (int i = 0; i < n.nk; ++i) {
+      const int port = place_of(varied_, i), own = graph().leaf(n.k(i));
+      constant_nodes_.push_back(port < 0 ? own : graph().add(own, graph().leaf(n.P(n.np - int_size(varied_) + port))));
+    }
     quantity_nodes_.assign(spec().quantities.size(), unbuilt);
     note_names(spec().states);
     note_names(spec().inputs);
@@ -73,6 +79,30 @@ class Compiler {
     for (int i = 0; i < own_ports_; ++i) names_.push_back(spec().dynamic_ports[i].name);
     names_.emplace_back("t");
     names_.emplace_back("pi");
+  }
+  /// Numbers of the constants that stand in more than one equation, by themselves or through quantities: an effect on such a constant acts
+  /// in all of them at once, as no force does. As many as there is room for.
+  std::vector<int> parameters_of_several_equations() {
+    std::vector<int> uses(spec().constants.size(), 0);
+    for (const Formula& equation : declaration_.equations) {
+      std::set<std::string> names;
+      note_names_in(equation, names);
+      for (std::size_t k = 0; k < uses.size(); ++k) uses[k] += names.contains(spec().constants[k].name) ? 1 : 0;
+    }
+    std::vector<int> out;
+    const std::size_t room = kMaxPorts - spec().inputs.size() - spec().quantities.size();
+    for (int k = 0; k < int_size(uses) && out.size() < room; ++k) {
+      if (uses[k] > 1 && index_of(spec().outputs, spec().constants[k].name) < 0) out.push_back(k);
+    }
+    return out;
+  }
+  /// All names of a formula, and of the quantities in it.
+  void note_names_in(const Formula& f, std::set<std::string>& names) {
+    for (const formula::Expression& node : f.syntax.nodes) {
+      if (node.kind != formula::Expression::Kind::name || !names.insert(node.text).second) continue;
+      if (const int quantity = index_of(spec().quantities, node.text); quantity >= 0)
+        note_names_in(declaration_.quantities[quantity], names);
+    }
   }
   template <class List>
   void note_names(const List& list) {
@@ -102,7 +132,7 @@ class Compiler {
     if (const int i = index_of(spec().inputs, name); i >= 0)
       return Meaning{at(input_nodes_, i), formula::measure_of(at(spec().inputs, i).unit)};
     if (const int i = index_of(spec().constants, name); i >= 0)
-      return Meaning{graph().leaf(out_->leaves.k(i)), formula::measure_of(at(spec().constants, i).unit)};
+      return Meaning{at(constant_nodes_, i), formula::measure_of(at(spec().constants, i).unit)};
     if (const int i = index_of(spec().quantities, name); i >= 0)
       return Meaning{quantity_node(i), formula::measure_of(at(spec().quantities, i).unit)};
     const int port = own_port(name);
@@ -275,6 +305,10 @@ class Compiler {
       spec().quantity_ports.push_back({.name = q.name, .unit = q.unit, .doc = "added to the quantity", .conjugate = q.name});
       add_quantity(q, quantity_nodes_[i], all);
     }
+    for (const int k : varied_) {
+      const ConstantSpec& constant = spec().constants[k];
+      spec().quantity_ports.push_back({.name = constant.name, .unit = constant.unit, .doc = "added to the parameter, in all equations"});
+    }
     spec().quantities = std::move(all);
     note_namesakes();
     note_ports_in_outputs();
@@ -305,7 +339,8 @@ class Compiler {
   std::shared_ptr<Compiled> out_;
   int own_ports_ = 0, next_origin_ = 0;
   std::vector<std::string> names_;
-  std::vector<int> state_nodes_, input_nodes_, quantity_nodes_, equation_nodes_, output_nodes_, all_quantity_nodes_;
+  std::vector<int> varied_;  ///< numbers of constants that are ports, too
+  std::vector<int> state_nodes_, input_nodes_, constant_nodes_, quantity_nodes_, equation_nodes_, output_nodes_, all_quantity_nodes_;
   std::vector<bool> kinematic_;
 };
 

@@ -30,6 +30,7 @@ class Roles {
     s.roles["output"] = s.roles["signal"] = role("output", outputs.front(), outputs);
     s.roles["time_of_output"] = sample_time_of(s.roles["output"]);
     set_other_output();
+    set_varying_parameter();
     if (!s.inputs.empty()) s.roles["input"] = role("input", s.inputs.front().name, quantities);
     if (s.inputs.empty() && d_.roles->text("input")) throw InputError(d_.roles->where("input"), "[roles] input: the system has no inputs");
     for (auto& p : s.dynamic_ports) {
@@ -76,6 +77,14 @@ class Roles {
       return o.name != own->name && parse_unit(o.unit).same_dimension(parse_unit(own->unit));
     });
     if (other != s.outputs.end()) s.roles["other_signal"] = s.roles["other_output"] = other->name;
+  }
+
+  /// The first parameter that is a port, with the level.
+  void set_varying_parameter() {
+    SystemSpec& s = d_.spec;
+    const auto varying = std::find_if(s.quantity_ports.begin(), s.quantity_ports.end(),
+                                      [&](const PortSpec& p) { return index_of(s.constants, p.name) >= 0; });
+    if (varying != s.quantity_ports.end()) s.roles["parameter"] = varying->name, s.roles["with"] = s.roles["level"];
   }
 
   std::string role(const char* name, const std::string& fallback, const std::vector<std::string>& valid) {

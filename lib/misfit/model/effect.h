@@ -101,8 +101,8 @@ struct CoefficientSpec {
   bool over_sine = false;  ///< as a curve: enters divided by the sine of its quantity (regular at 0), see CubicSpline::over_sine
   bool fixed = false;      ///< not fitted unless the study frees it: a smoothing width, an origin of time
   ScanSpec scan{};
-  /// Of a shape that is the drift of another coefficient [its unit/s]: the name of that one. It is fixed at 0 unless the study frees it, or
-  /// discovery, where that raises the likelihood clearly.
+  /// Of a shape that is the drift of another coefficient in time, or along a role: the name of that one. Fixed at 0 unless the study frees
+  /// it, or discovery, where that raises the likelihood clearly.
   const char* drift_of = "";
   OfMeasurements measured_as = OfMeasurements::none;  ///< discovery refuses a `step` of which the measurements are no multiples
   /// Of a strength that has only this one value besides 0: an output is delayed as a whole, or not at all. Discovery fixes the strength at
