@@ -468,6 +468,8 @@ TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
       v.sentence,
       AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("(-85 %); whether more is missing is not decided"),
             HasSubstr("; best candidate lag (drop 50, family-wise p = 1e-09), rejected: its size is odd; lag can be added by hand")));
+  c.discovery->candidates.front().why = "the held-out log-likelihood does not rise";
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor") << "there is always something next";
 }
 
 TEST(Verdict, WhatIsStillMissingComesBeforeWhatWasAdded) {
@@ -575,6 +577,30 @@ TEST(Verdict, ADependenceOfUnknownFormIsSaidWithItsPortAndQuantity) {
   EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
   EXPECT_THAT(c.verdict().sentence,
               AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("still missing that depends on w")));
+}
+
+/// A curve of a quantity describes where the pulses happened to be.
+TEST(Verdict, OfPulsesItSaysWhenTheyComeWhateverTheyDependOn) {
+  Case c;
+  c.fail_at_rest();
+  ForcePulses pulses;
+  pulses.sentence = "what is missing on dw/dt comes in 11 pulses of 2.5 min";
+  c.diagnosis->pulses = {pulses};
+  c.discovery = searched({candidate("lag", 0.5, false)}, SearchOutcome::unknown_form, "Something is missing that depends on w");
+  c.discovery->unexplained_port = "dw/dt";
+  c.discovery->unexplained_quantity = "w";
+  c.discovery->unexplained_effects = {{"unknown_force", {{"of", "w"}, {"port", "dw/dt"}}}};
+  const auto says_so = AllOf(HasSubstr("missing that no effect of the library explains: what is missing on dw/dt comes in 11 pulses"),
+                             testing::Not(HasSubstr("depends on w")));
+  EXPECT_EQ(c.verdict().kind, VerdictKind::unknown_form);
+  EXPECT_THAT(c.verdict().sentence, says_so);
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
+  c.discovery = searched({}, SearchOutcome::none_missing, "No missing effect detected");
+  EXPECT_THAT(c.verdict().sentence, says_so) << "something is missing, though no test found what";
+  c.add_effect();
+  EXPECT_THAT(c.verdict().sentence, testing::Not(HasSubstr("pulses"))) << "the last model lacks none";
+  c.rung_diagnosis = c.diagnosis;
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("; something is still missing that no effect of the library explains: what is missing"));
 }
 
 TEST(Verdict, OfSomethingUnknownTheNearestEffectOfTheLibraryIsNamedWithWhatItLeaves) {

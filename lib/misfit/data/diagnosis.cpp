@@ -56,6 +56,12 @@ void fields(Archive& json, MaybeConst<NisSeries> auto& n) {
 }
 
 template <class Archive>
+void fields(Archive& json, MaybeConst<ForcePulses> auto& p) {
+  json("experiment", p.experiment), json("port", p.port), json("port_unit", p.port_unit), json("begin", p.begin);
+  json("end", p.end), json("peak", p.peak), json("sentence", p.sentence);
+}
+
+template <class Archive>
 void fields(Archive& json, MaybeConst<NamedColumn> auto& column) {
   json("name", column.name), json("unit", column.unit);
 }
@@ -124,7 +130,8 @@ template <class Archive>
 void fields(Archive& json, MaybeConst<StoredDiagnosis> auto& stored) {
   auto& d = stored.diagnosis;
   json("method", d.method), json("sentences", d.sentences), json("maps", d.maps), json("pairs", d.pairs);
-  json("whiteness", d.whiteness), json("nis", d.nis), json("missing", stored.missing), json("seconds", d.seconds);
+  json("whiteness", d.whiteness), json("nis", d.nis), json("missing", stored.missing), json.if_there("pulses", d.pulses),
+      json("seconds", d.seconds);
 }
 
 const ForceMap* find_map(const Diagnosis& diagnosis, const std::string& port, const std::string& quantity) {

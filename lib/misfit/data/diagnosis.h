@@ -59,6 +59,14 @@ struct MissingForce {
   std::vector<std::vector<double>> values;  ///< per quantity
 };
 
+/// A missing force that is there for short stretches only (pulses.h).
+struct ForcePulses {
+  std::string experiment, port, port_unit;
+  std::vector<double> begin, end;  ///< [s]
+  std::vector<double> peak;        ///< largest departure from the median [port_unit]
+  std::string sentence;            ///< "what is missing on dT/dt comes in 11 pulses of …"
+};
+
 /// Normalised innovation squared over time, averaged over windows, with the band of a right model.
 struct NisSeries {
   std::string experiment;
@@ -75,7 +83,8 @@ struct Diagnosis {
   std::vector<PairMap> pairs;
   std::vector<NisSeries> nis;
   std::vector<MissingForce> missing;
-  std::vector<std::string> sentences;  ///< plain conclusions, most important first
+  std::optional<std::vector<ForcePulses>> pulses;  ///< none: the missing force is there for longer
+  std::vector<std::string> sentences;              ///< plain conclusions, most important first
   double seconds = 0.0;
 };
 

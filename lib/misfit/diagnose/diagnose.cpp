@@ -12,6 +12,7 @@
 #include "misfit/data/estimators.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/diagnose/innovations.h"
+#include "misfit/diagnose/pulses.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/math/statistics.h"
 
@@ -191,6 +192,9 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
 
 void conclude(Diagnosis& out) {
   int said = 0;
+  if (out.pulses) {
+    for (const ForcePulses& pulses : *out.pulses) out.sentences.push_back(pulses.sentence);
+  }
   std::vector<std::string> quantities;
   for (const auto& map : out.maps) {
     const bool repeated = std::find(quantities.begin(), quantities.end(), map.port + map.quantity) != quantities.end();
@@ -238,6 +242,7 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   out.pairs = pair_maps(search, out.maps);
   out.nis = nis_of(estimate);
   out.missing = missing_force_of(estimate);
+  if (std::vector<ForcePulses> pulses = pulses_of(out.missing); !pulses.empty()) out.pulses = std::move(pulses);
   conclude(out);
   out.seconds = clock.seconds();
   return out;

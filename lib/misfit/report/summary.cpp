@@ -52,12 +52,23 @@ const Fit* leading_fit(const ReportInput& input) {
   return last;
 }
 
-/// The picture in which one sees the verdict: the missing force before and after, or where it is missing, or the camera's residuals, or the
-/// motion that the model follows or does not.
+/// Of the last model, where the verdict is that something of unknown form is missing and comes in pulses; nullptr: it is another.
+const MissingForce* missing_in_pulses(const ReportInput& input) {
+  const std::optional<Diagnosis>& last = input.rung ? input.rung->diagnosis : input.diagnosis;
+  if (input.verdict->kind != VerdictKind::unknown_form || !last || !last->pulses) return nullptr;
+  const std::string& experiment = last->pulses->front().experiment;
+  const auto found =
+      std::find_if(last->missing.begin(), last->missing.end(), [&](const MissingForce& m) { return m.experiment == experiment; });
+  return found == last->missing.end() ? nullptr : &*found;
+}
+
+/// The picture in which one sees the verdict: the pulses of the missing force over time, the missing force before and after, or where it is
+/// missing, or the camera's residuals, or the motion that the model follows or does not.
 std::optional<Figure> picture_of(const ReportInput& input) {
   const Verdict& verdict = *input.verdict;
   if (verdict.kind == VerdictKind::calibration && input.calibration && !input.calibration->residuals.empty())
     return calibration_residual_figure(*input.calibration);
+  if (const MissingForce* pulses = missing_in_pulses(input)) return missing_force_figure(*pulses, std::nullopt);
   const bool maps = input.diagnosis && !input.diagnosis->maps.empty();
   if (maps && input.rung && input.rung->diagnosis) {
     const ForceMap& before = input.diagnosis->maps.front();

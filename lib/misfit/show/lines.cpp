@@ -128,6 +128,7 @@ std::string line_of(const Comparison& c) {
 }
 
 std::string line_of(const Diagnosis& d) {
+  if (d.pulses) return d.pulses->front().sentence;
   if (d.maps.empty()) return "no map could be made";
   const ForceMap& first = d.maps.front();
   if (!first.sentence.empty()) return first.sentence;

@@ -313,7 +313,8 @@ class VerdictBuilder {
     return effect_at(rejected.effect, rejected.roles) + " can be added by hand, to compare the errors before and after";
   }
   [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
-    return by_hand(rejected).empty() ? "" : command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
+    if (by_hand(rejected).empty()) return command("open");
+    return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
   }
 
   /// The first candidate, where a lack of fit that it leaves is all that speaks against it; nullptr: it is another.
@@ -323,10 +324,23 @@ class VerdictBuilder {
     return first.remaining && first.actual_drop ? &first : nullptr;
   }
 
+  /// Of the last model; nullptr: what it lacks is there for longer.
+  [[nodiscard]] const ForcePulses* pulses_left() const {
+    const Diagnosis* last = effects_added_ ? in_.rung_diagnosis : in_.diagnosis;
+    return last == nullptr || !last->pulses ? nullptr : &last->pulses->front();
+  }
+  /// Of pulses a curve of any quantity describes no more than where that happened to be.
+  void missing_in_pulses(const ForcePulses& pulses) {
+    const std::string words =
+        fmt::format("something is {}missing that no effect of the library explains: {}", effects_added_ ? "still " : "", pulses.sentence);
+    effects_added_ ? added(words, command("open"), VerdictKind::unknown_form) : say(VerdictKind::unknown_form, words, command("open"));
+  }
+
   void nothing_accepted(const Discovery& d) {
     if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
       say(VerdictKind::not_decided, d.verdict, command("discover") + more_time(d.outcome));
     } else if (!d.unexplained_port.empty()) {
+      if (const ForcePulses* pulses = pulses_left()) return missing_in_pulses(*pulses);
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       const EffectPlace* curve = untried(d.unexplained_effects);
@@ -352,6 +366,8 @@ class VerdictBuilder {
       say(VerdictKind::not_decided, as_sentence(d.verdict) + (by_hand(best).empty() ? "" : " " + by_hand(best)), add_by_hand(best));
     } else if (d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, as_sentence(d.verdict) + " Write one as a formula under [effects]", "misfit help study");
+    } else if (const ForcePulses* pulses = pulses_left()) {
+      missing_in_pulses(*pulses);
     } else if (effects_added_) {
       added("nothing more is found missing", export_command());
     } else {
