@@ -187,8 +187,10 @@ void write_two_spots(const fs::path& path, double duration) {
     Image image(width, height);
     for (int at = 0; at < width * height; ++at) {
       double inside = 0.0;
+      const int column = at % width, row = at / width;
       for (int part = 0; part < across * across; ++part) {
-        const double x = at % width + (part % across + 0.5) / across - 0.5, y = at / width + (part / across + 0.5) / across - 0.5;
+        const int right_of = part % across, below = part / across;
+        const double x = column + (right_of + 0.5) / across - 0.5, y = row + (below + 0.5) / across - 0.5;
         for (const PixelPoint& spot : {left, right}) inside += std::hypot(x - spot.column, y - spot.row) < 8.0 ? 1.0 : 0.0;
       }
       image.pixels[static_cast<std::size_t>(at)] =

@@ -128,6 +128,7 @@ constexpr Known known_units[] = {
     {"pixel", 1.0, pixel},
     {"-", 1.0, none},
     {"%", 0.01, none, false, "-"},
+    {"ppm", 1e-6, none, false, "-"},
     {"1", 1.0, none},
 };
 

@@ -13,7 +13,7 @@ namespace misfit {
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< [rad]
 
 /// A unit as factor to SI and exponents of (m, kg, s, A, K, px). Angles are dimensionless: rad = 1, deg = pi/180; so are
-/// "-", "" and "%" (0.01). degC and degF have an offset where they stand alone: in a product ("W/degC") they are differences.
+/// "-", "", "%" (0.01) and "ppm" (1e-6). degC and degF have an offset where they stand alone: in a product ("W/degC") they are differences.
 struct Unit {
   double to_si = 1.0;
   double offset = 0.0;                ///< SI value = to_si · value + offset

@@ -13,6 +13,7 @@
 #include "misfit/fit/filter/k_step.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/model/provisional.h"
+#include "misfit/workflow/assess/assess.h"
 #include "misfit/workflow/assess/without.h"
 #include "misfit/workflow/ladder.h"
 
@@ -122,6 +123,8 @@ class Extension {
   /// A force or an error of unknown form becomes a rung as it is: a curve of the quantity that it depends on. What else is missing can then
   /// be found beside it. False: there is none, or it gains nothing.
   bool add_curve(const Discovery& discovery) {
+    if (!discovery.unexplained_effects.empty() && lacks_pulses_only(ladder_.last()))
+      return false;  // where they happened to be is no reason
     return std::any_of(discovery.unexplained_effects.begin(), discovery.unexplained_effects.end(),
                        [this](const EffectPlace& place) { return add_curve(place); });
   }

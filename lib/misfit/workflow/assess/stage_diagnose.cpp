@@ -3,6 +3,8 @@
 #include "misfit/core/error.h"
 #include "misfit/data/estimators.h"
 #include "misfit/diagnose/diagnose.h"
+#include "misfit/diagnose/innovations.h"
+#include "misfit/diagnose/pulses.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/assess/assess.h"
 
@@ -40,6 +42,10 @@ std::optional<Diagnosis> diagnose_stage(Session& session) {
     write_diagnosis(dir, diagnose(*work->estimate, {session.options.threads, session.progress("diagnose")}));
   });
   return read_diagnosis(session.folder.path());
+}
+
+bool lacks_pulses_only(Session& session) {
+  return !filter_declined(session) && !pulses_of(missing_force_of(*filter_work(session)->estimate)).empty();
 }
 
 }  // namespace misfit
