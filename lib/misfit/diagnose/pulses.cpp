@@ -18,7 +18,7 @@ constexpr double far = 8.0;  // robust standard deviations
 
 /// The smoothed force in units of what the model's own random force would give it: its variance is that of the force less the smoother's
 /// own. Where a recording says little of the force (a gain that depends on the state) it is small, pulses or not; where it says next to
-/// nothing, NaN.
+/// nothing, NaN. Empty where it says next to nothing anywhere.
 std::vector<double> standardised(const std::vector<double>& force, const std::vector<double>& sigma) {
   constexpr double next_to_nothing = 0.05;
   double of_force = 0.0;
@@ -27,6 +27,7 @@ std::vector<double> standardised(const std::vector<double>& force, const std::ve
   std::vector<double> known;
   for (const double s : sigma) known.push_back(of_force - s * s);
   const double best = *std::max_element(known.begin(), known.end());
+  if (!(best > next_to_nothing * of_force)) return {};
   std::vector<double> out(force.size(), std::nan(""));
   for (std::size_t k = 0; k < force.size(); ++k) {
     if (known[k] > next_to_nothing * best) out[k] = force[k] / std::sqrt(known[k]);
@@ -135,6 +136,7 @@ void add_pulses(const MissingForce& missing, std::size_t port, std::vector<Force
   if (force.size() < 2) return;
   const double usual = median(force), step = usual_step(missing.t);
   const std::vector<double> z = standardised(force, missing.sigma[port]);
+  if (z.empty()) return;
   const double usual_z = median(finite(z));
   const std::vector<Stretch> stretches = far_stretches(z, usual_z, mad_sigma(finite(z)));
   if (!stand_out(stretches, z, usual_z)) return;
