@@ -203,17 +203,28 @@ std::vector<Roles> times_of_outputs(const SystemSpec& system) {
   return out;
 }
 
-/// Each parameter that is free and a port, once per state and input that it may vary with. Of small systems, as times_other_states().
-std::vector<Roles> varying_parameters(const SystemSpec& system) {
-  std::vector<Roles> out;
-  if (!is_small(system)) return out;
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.push_back(item.name);
+  return names;
+}
+
+/// Each parameter that is free and a port. Where the effect reads what it varies with, once per state and input, but for a parameter of one
+/// equation: that is a product of what is there with these, bilinear. Of small systems, as times_other_states().
+std::vector<Roles> varying_parameters(const EffectSpec& effect, const SystemSpec& system) {
+  std::vector<Roles> parameters;
+  const bool reads = has_role(effect.quantities, "with");
+  if (!is_small(system)) return parameters;
   for (const PortSpec& port : system.quantity_ports) {
     const int parameter = index_of(system.constants, port.name);
-    if (parameter < 0 || !system.constants[parameter].free) continue;
-    for (const StateSpec& state : system.states) out.push_back({{"parameter", port.name}, {"with", state.name}});
-    for (const InputSpec& input : system.inputs) out.push_back({{"parameter", port.name}, {"with", input.name}});
+    const bool one_equation = !port.conjugate.empty();
+    if (parameter >= 0 && system.constants[parameter].free && !(reads && one_equation)) parameters.push_back({{"parameter", port.name}});
   }
-  return out;
+  if (!reads) return parameters;
+  std::vector<std::string> values = names_of(system.states);
+  for (const InputSpec& input : system.inputs) values.push_back(input.name);
+  return times(parameters, "with", values);
 }
 
 bool is_in_outputs(const SystemSpec& system, const std::string& port) {
@@ -237,13 +248,6 @@ std::vector<Roles> with_inputs_in_outputs(std::vector<Roles> places, const Effec
   return places;
 }
 
-template <class List>
-std::vector<std::string> names_of(const List& list) {
-  std::vector<std::string> names;
-  for (const auto& item : list) names.push_back(item.name);
-  return names;
-}
-
 }  // namespace
 
 bool is_generic(const EffectSpec& effect) {
@@ -254,7 +258,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   std::vector<Roles> out = {{}};
   if (has_role(effect.ports, all_sample_times) && system.inputs.empty()) return {};
   if (has_role(effect.ports, "time_of_output")) return times_of_outputs(system);
-  if (has_role(effect.ports, "parameter")) return varying_parameters(system);
+  if (has_role(effect.ports, "parameter")) return varying_parameters(effect, system);
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};
   if (has_role(effect.ports, "port") || has_role(effect.ports, "to_port")) places = natural_ports(system);

@@ -10,7 +10,8 @@ namespace misfit {
 
 /// A system declared as text (TOML); its keys: declared_keys.cpp, misfit help system. Formulas: misfit/formula; units are checked through
 /// them, SI and radians. Every equation also has the dynamic port dSTATE/dt, whose conjugate is the state. Every input and quantity is a
-/// quantity port as well; an input before such changes is the quantity NAME_given. So is every parameter that stands in several equations.
+/// quantity port as well; an input before such changes is the quantity NAME_given. So is every parameter that stands in
+/// several equations and outputs, and in a system of up to three states each whose action depends on states or inputs.
 /// An output that is a formula of an input or quantity sees what effects add to it. InputError with file, line and column.
 [[nodiscard]] SystemType declared_system(const std::string& text, const std::string& file, const std::string& key);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
@@ -18,7 +17,9 @@ using formula::Op;
 
 class Compiler {
  public:
-  explicit Compiler(Declaration declaration) : declaration_(std::move(declaration)), out_(std::make_shared<Compiled>()) {}
+  /// `varied`: numbers of the constants that are ports, too.
+  Compiler(Declaration declaration, std::vector<int> varied)
+      : declaration_(std::move(declaration)), out_(std::make_shared<Compiled>()), varied_(std::move(varied)) {}
 
   std::shared_ptr<const Compiled> run() {
     check_sizes();
@@ -31,6 +32,28 @@ class Compiler {
     make_tapes(*out_, all_quantity_nodes_, output_nodes_, declaration_.where);
     out_->spec = std::move(declaration_.spec);
     return out_;
+  }
+
+  /// Once it has run: numbers of the constants on which an effect acts as no force does. It stands in several equations and outputs; or, in
+  /// a small system, what it does depends on states or inputs. As many as there is room for.
+  std::vector<int> constants_that_may_vary() {
+    constexpr std::size_t small = 3;
+    std::vector<int> nodes = equation_nodes_, out;
+    nodes.insert(nodes.end(), output_nodes_.begin(), output_nodes_.end());
+    const std::size_t room = kMaxPorts - out_->spec.quantity_ports.size();
+    for (int k = 0; k < out_->leaves.nk && out.size() < room; ++k) {
+      const int leaf = out_->leaves.k(k);
+      int places = 0;
+      bool depends = false;
+      for (const int node : nodes) {
+        if (!uses(node, leaf)) continue;
+        ++places;
+        depends = depends || depends_on_motion(graph().derivatives(node, {graph().leaf(leaf)}).front());
+      }
+      const bool of_output = index_of(out_->spec.outputs, out_->spec.constants[k].name) >= 0;
+      if (!of_output && (places > 1 || (depends && out_->spec.states.size() <= small))) out.push_back(k);
+    }
+    return out;
   }
 
  private:
@@ -55,7 +78,6 @@ class Compiler {
     n.nx = int_size(spec().states);
     n.nu = int_size(spec().inputs);
     n.nk = int_size(spec().constants);
-    varied_ = parameters_of_several_equations();
     n.np = n.nu + int_size(spec().quantities) + int_size(varied_);
     own_ports_ = int_size(spec().dynamic_ports);
     n.nf = own_ports_ + n.nx;
@@ -80,29 +102,9 @@ class Compiler {
     names_.emplace_back("t");
     names_.emplace_back("pi");
   }
-  /// Numbers of the constants that stand in more than one equation, by themselves or through quantities: an effect on such a constant acts
-  /// in all of them at once, as no force does. As many as there is room for.
-  std::vector<int> parameters_of_several_equations() {
-    std::vector<int> uses(spec().constants.size(), 0);
-    for (const Formula& equation : declaration_.equations) {
-      std::set<std::string> names;
-      note_names_in(equation, names);
-      for (std::size_t k = 0; k < uses.size(); ++k) uses[k] += names.contains(spec().constants[k].name) ? 1 : 0;
-    }
-    std::vector<int> out;
-    const std::size_t room = kMaxPorts - spec().inputs.size() - spec().quantities.size();
-    for (int k = 0; k < int_size(uses) && out.size() < room; ++k) {
-      if (uses[k] > 1 && index_of(spec().outputs, spec().constants[k].name) < 0) out.push_back(k);
-    }
-    return out;
-  }
-  /// All names of a formula, and of the quantities in it.
-  void note_names_in(const Formula& f, std::set<std::string>& names) {
-    for (const formula::Expression& node : f.syntax.nodes) {
-      if (node.kind != formula::Expression::Kind::name || !names.insert(node.text).second) continue;
-      if (const int quantity = index_of(spec().quantities, node.text); quantity >= 0)
-        note_names_in(declaration_.quantities[quantity], names);
-    }
+  bool depends_on_motion(int node) {
+    const std::vector<int> leaves = graph().leaves_of(node);
+    return std::any_of(leaves.begin(), leaves.end(), [&](int leaf) { return leaf < out_->leaves.t(); });
   }
   template <class List>
   void note_names(const List& list) {
@@ -307,7 +309,10 @@ class Compiler {
     }
     for (const int k : varied_) {
       const ConstantSpec& constant = spec().constants[k];
-      spec().quantity_ports.push_back({.name = constant.name, .unit = constant.unit, .doc = "added to the parameter, in all equations"});
+      spec().quantity_ports.push_back({.name = constant.name,
+                                       .unit = constant.unit,
+                                       .doc = "added to the parameter, wherever it stands",
+                                       .conjugate = only_state_moved_by(out_->leaves.k(k))});
     }
     spec().quantities = std::move(all);
     note_namesakes();
@@ -315,6 +320,16 @@ class Compiler {
     if (int_size(spec().quantities) + int_size(spec().outputs) > kMaxQuantities)
       throw InputError(declaration_.where, "states, inputs, quantities and outputs are together too many");
     set_roles(declaration_, own_ports_);
+  }
+  /// The state whose equation alone reads this leaf; empty: several do, or an output.
+  std::string only_state_moved_by(int leaf) {
+    std::string out;
+    for (std::size_t j = 0; j < equation_nodes_.size(); ++j) {
+      if (!uses(equation_nodes_[j], leaf)) continue;
+      if (!out.empty()) return "";
+      out = spec().states[j].name;
+    }
+    return std::any_of(output_nodes_.begin(), output_nodes_.end(), [&](int node) { return uses(node, leaf); }) ? "" : out;
   }
   void note_namesakes() {
     for (int o = 0; o < int_size(spec().outputs); ++o) {
@@ -337,15 +352,20 @@ class Compiler {
   static constexpr int unbuilt = -1, in_work = -2;
   Declaration declaration_;
   std::shared_ptr<Compiled> out_;
+  std::vector<int> varied_;
   int own_ports_ = 0, next_origin_ = 0;
   std::vector<std::string> names_;
-  std::vector<int> varied_;  ///< numbers of constants that are ports, too
   std::vector<int> state_nodes_, input_nodes_, constant_nodes_, quantity_nodes_, equation_nodes_, output_nodes_, all_quantity_nodes_;
   std::vector<bool> kinematic_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Compiled> compile(Declaration declaration) { return Compiler(std::move(declaration)).run(); }
+std::shared_ptr<const Compiled> compile(Declaration declaration) {
+  Compiler compiler(declaration, {});
+  const std::shared_ptr<const Compiled> plain = compiler.run();
+  std::vector<int> varied = compiler.constants_that_may_vary();
+  return varied.empty() ? plain : Compiler(std::move(declaration), std::move(varied)).run();
+}
 
 }  // namespace misfit::declared

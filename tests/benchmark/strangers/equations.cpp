@@ -105,7 +105,8 @@ void thermal_house(const double* x, const double* u, const Values& p, double* dx
 }
 
 void heat_exchanger(const double* x, const double* u, const Values& p, double* dx, double* y) {
-  const double h = p("h") * (1 - p("fouling") * p("t") / 1000) * (1 + p("turbulence") * (u[0] - 0.2));
+  const double shed = 1 + p("shedding") * std::sin(p("t") / 37);
+  const double h = p("h") * (1 - p("fouling") * p("t") / 1000) * (1 + p("turbulence") * (u[0] - 0.2)) * shed;
   dx[0] = (u[0] * (u[1] - x[0]) - h * (x[0] - x[1]) - p("shell") * (x[0] - x[2]) - p("loss")) / p("Mh");
   dx[1] = (h * (x[0] - x[1]) - p("mc") * x[1] - p("cold_loss") * x[1]) / p("Mc");
   dx[2] = p("shell") > 0.0 ? (x[0] - x[2]) / p("shell_tau") : 0.0;
