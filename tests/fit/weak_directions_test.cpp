@@ -199,6 +199,11 @@ TEST(WeakDirections, AShapeOfEitherSignIsJudgedByItsTypicalSizeNotByItsNearnessT
   shape.lower = -3.0;
   warn_of_collinearity(model, covariance, either);
   EXPECT_TRUE(either.warnings.empty());
+  Fit large;
+  shape.value = 0.5;
+  shape.scale = 0.001;  // the library knows no size of it
+  warn_of_collinearity(model, covariance, large);
+  EXPECT_TRUE(large.warnings.empty()) << "0.5 ± 0.0088";
 }
 
 TEST(WeakDirections, AValueLostInItsSigmaIsKnownToSoMuchNotToAShareOfItself) {

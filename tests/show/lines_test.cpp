@@ -101,7 +101,7 @@ TEST(LineOfARung, NamesThePortsOfRandomForcesInSeveralUnits) {
                 {"dv/dt", {3.0, 0.1, "m/s^2"}},
                 {"du/dt", {3.0, 0.1, "m/s^2"}},
                 {"dw/dt", {20.0, 1.0, "V/s"}}};
-  EXPECT_EQ(line_of(rung), "random force 3.00 ± 0.10 m/s^2 on du/dt, 20.0 ± 1.0 V/s on dw/dt");
+  EXPECT_EQ(line_of(rung), "random force 3.00 ± 0.10 m/s^2 on du/dt and dv/dt, 20.0 ± 1.0 V/s on dw/dt");
 }
 
 }  // namespace

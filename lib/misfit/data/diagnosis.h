@@ -83,7 +83,7 @@ struct Diagnosis {
   std::vector<PairMap> pairs;
   std::vector<NisSeries> nis;
   std::vector<MissingForce> missing;
-  std::optional<std::vector<ForcePulses>> pulses;  ///< none: the missing force is there for longer
+  std::optional<std::vector<ForcePulses>> pulses;  ///< none, or a map says where they come
   std::vector<std::string> sentences;              ///< plain conclusions, most important first
   double seconds = 0.0;
 };

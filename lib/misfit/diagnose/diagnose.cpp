@@ -190,6 +190,12 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
   return out;
 }
 
+/// A map over anything but the time of the recording says where the model fails: pulses come there, if there are any.
+bool depends_on_a_quantity(const std::vector<ForceMap>& maps) {
+  return std::any_of(maps.begin(), maps.end(),
+                     [](const ForceMap& map) { return !map.sentence.empty() && map.quantity != time_of_recording; });
+}
+
 void conclude(Diagnosis& out) {
   int said = 0;
   if (out.pulses) {
@@ -242,7 +248,8 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   out.pairs = pair_maps(search, out.maps);
   out.nis = nis_of(estimate);
   out.missing = missing_force_of(estimate);
-  if (std::vector<ForcePulses> pulses = pulses_of(out.missing); !pulses.empty()) out.pulses = std::move(pulses);
+  std::vector<ForcePulses> pulses = depends_on_a_quantity(out.maps) ? std::vector<ForcePulses>{} : pulses_of(out.missing);
+  if (!pulses.empty()) out.pulses = std::move(pulses);
   conclude(out);
   out.seconds = clock.seconds();
   return out;

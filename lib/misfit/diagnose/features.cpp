@@ -88,8 +88,8 @@ struct Samples {
   std::size_t first = 0, end = 0;
 };
 
-/// u − z of the quantity `course.index`: at each sample, and before the next one. z begins at the first u that is known and stands still
-/// where u is not.
+/// u − z of the quantity `course.index`: at each sample, and at the end of the step from it (quantities_ahead()). z begins at the first u
+/// that is known and stands still where u is not.
 void add_past(const ForceSensitivity& force, const Samples& samples, double intervals, Course& course) {
   const std::vector<double>& t = force.times();
   const double tau = intervals * usual_step({t.begin() + samples.first, t.begin() + samples.end});
@@ -100,7 +100,7 @@ void add_past(const ForceSensitivity& force, const Samples& samples, double inte
     const std::size_t next = std::min(k + 1, samples.end - 1);
     course.values.push_back(u(k) - z);
     if (std::isfinite(u(k))) z += (1.0 - std::exp((t[k] - t[next]) / tau)) * (u(k) - z);
-    course.ahead.push_back(u(next) - z);
+    course.ahead.push_back(force.used()[k] && next > k ? force.quantities_ahead()(k, course.index) - z : u(next) - z);
   }
 }
 

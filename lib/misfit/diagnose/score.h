@@ -49,7 +49,8 @@ class ForceSensitivity {
 
   /// Quantities at the filtered state of each sample, all experiments one after the other (0 before the first used sample).
   [[nodiscard]] const RowMatrix& quantities() const { return quantities_; }
-  /// Quantities predicted at the end of the step from each sample: a force over the step must not depend on the next measurement.
+  /// Quantities predicted at the end of the step from each sample, inputs that are held as they were: a force over the step must not depend
+  /// on the next measurement, nor on a controller's answer to it.
   [[nodiscard]] const RowMatrix& quantities_ahead() const { return ahead_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }

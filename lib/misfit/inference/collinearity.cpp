@@ -172,7 +172,7 @@ void warn_of_collinearity(const Model& model, const Eigen::MatrixXd& covariance,
     constexpr double min_share_of_prior = 0.95;
     if (p.prior_sigma && sigma > min_share_of_prior * *p.prior_sigma) {
       prior_only += (prior_only.empty() ? "" : ", ") + p.name;
-    } else if (p.kind == CoefficientKind::shape && sigma > (p.lower >= 0.0 ? std::abs(p.value) : p.scale)) {
+    } else if (p.kind == CoefficientKind::shape && sigma > std::max(std::abs(p.value), p.lower >= 0.0 ? 0.0 : p.scale)) {
       fit.warnings.push_back(p.name + " is hardly determined by these data: " + in_display_unit(p.value, p.unit, sigma));
     }
     if (const std::optional<double> bound = bound_reached(p)) report_bound(model, free[c], *bound, fit);

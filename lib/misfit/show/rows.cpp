@@ -57,17 +57,31 @@ std::string briefly(const Estimate& e) {
 
 std::string shown(const std::optional<Estimate>& e) { return e ? shown(*e) : kMissing; }
 
+namespace {
+
+bool is_alike(const ForceStrength& force, const std::string& unit) {
+  return parse_unit(force.strength.unit).same_dimension(parse_unit(unit));
+}
+
+}  // namespace
+
 std::vector<ForceStrength> force_strengths(const std::map<std::string, Estimate>& force) {
   std::vector<ForceStrength> out;
   for (const auto& [port, e] : force) {
-    if (e.unit != "s" && !strength_in(out, e.unit)) out.push_back({port, e});
+    if (e.unit == "s") continue;
+    const auto same =
+        std::find_if(out.begin(), out.end(), [&, &strength = e](const ForceStrength& f) { return is_alike(f, strength.unit); });
+    if (same == out.end()) {
+      out.push_back({port, e});
+    } else {
+      same->port += " and " + port;
+    }
   }
   return out;
 }
 
 std::optional<Estimate> strength_in(const std::vector<ForceStrength>& forces, const std::string& unit) {
-  const auto alike = [&](const ForceStrength& f) { return parse_unit(f.strength.unit).same_dimension(parse_unit(unit)); };
-  const auto found = std::find_if(forces.begin(), forces.end(), alike);
+  const auto found = std::find_if(forces.begin(), forces.end(), [&](const ForceStrength& f) { return is_alike(f, unit); });
   return found == forces.end() ? std::nullopt : std::optional(found->strength);
 }
 

@@ -53,7 +53,7 @@ inline constexpr const char* kMissing = "–";
 
 /// The strength of a random force, which its ports of one unit share.
 struct ForceStrength {
-  std::string port;  ///< the first of them
+  std::string port;  ///< "dw1/dt and dw2/dt": all of its unit, which share the strength
   Estimate strength;
 };
 /// One for each unit, in the order of their ports: without correlation times. Empty: there is no random force.

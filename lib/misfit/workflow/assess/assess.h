@@ -20,7 +20,7 @@ namespace misfit {
 [[nodiscard]] Comparison compare_stage(Session& session, const std::vector<Fit>& fits);
 /// diagnosis.json and missing_force.csv; nullopt if filter_error declined (its fit says why). Runs that fit where it must.
 [[nodiscard]] std::optional<Diagnosis> diagnose_stage(Session& session);
-/// The force that is missing is there for short stretches only (pulses.h).
+/// The force that is missing comes in pulses (Diagnosis::pulses).
 [[nodiscard]] bool lacks_pulses_only(Session& session);
 /// candidates.json and discovery.json; nullopt if filter_error declined.
 [[nodiscard]] std::optional<Discovery> discover_stage(Session& session);

@@ -3,8 +3,6 @@
 #include "misfit/core/error.h"
 #include "misfit/data/estimators.h"
 #include "misfit/diagnose/diagnose.h"
-#include "misfit/diagnose/innovations.h"
-#include "misfit/diagnose/pulses.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/workflow/assess/assess.h"
 
@@ -45,7 +43,7 @@ std::optional<Diagnosis> diagnose_stage(Session& session) {
 }
 
 bool lacks_pulses_only(Session& session) {
-  return !filter_declined(session) && !pulses_of(missing_force_of(*filter_work(session)->estimate)).empty();
+  return !filter_declined(session) && diagnose(*filter_work(session)->estimate, {session.options.threads, {}}).pulses.has_value();
 }
 
 }  // namespace misfit
