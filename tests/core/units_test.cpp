@@ -50,6 +50,7 @@ TEST(ParseUnit, HasTheFactorsOfTheBooks) {
   EXPECT_NEAR(parse_unit("lbf").to_si, 4.4482216152605, 1e-13);  // NIST SP 811
   EXPECT_DOUBLE_EQ(parse_unit("%").to_si, 0.01);
   EXPECT_DOUBLE_EQ(parse_unit("ppm").to_si, 1e-6);
+  EXPECT_TRUE(parse_unit("H").same_dimension(parse_unit("V s/A")));
   EXPECT_DOUBLE_EQ(parse_unit("ft^2").to_si, 0.3048 * 0.3048);
 }
 

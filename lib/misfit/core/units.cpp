@@ -45,6 +45,7 @@ constexpr Dimension power{2, 1, -3, 0, 0, 0};
 constexpr Dimension energy{2, 1, -2, 0, 0, 0};
 constexpr Dimension current{0, 0, 0, 1, 0, 0};
 constexpr Dimension temperature{0, 0, 0, 0, 1, 0};
+constexpr Dimension inductance{2, 1, -2, -2, 0, 0};
 constexpr Dimension flux_density{0, 1, -2, -1, 0, 0};
 constexpr Dimension volume{3, 0, 0, 0, 0, 0};
 constexpr Dimension speed{1, 0, -1, 0, 0, 0};
@@ -114,6 +115,9 @@ constexpr Known known_units[] = {
     {"Ohm", 1.0, {2, 1, -3, -2, 0, 0}},
     {"ohm", 1.0, {2, 1, -3, -2, 0, 0}, false, "Ohm"},
     {"kOhm", 1e3, {2, 1, -3, -2, 0, 0}, false, "Ohm"},
+    {"H", 1.0, inductance},
+    {"mH", 1e-3, inductance, false, "H"},
+    {"uH", 1e-6, inductance, false, "H"},
     {"T", 1.0, flux_density},
     {"mT", 1e-3, flux_density, false, "T"},
     {"uT", 1e-6, flux_density, false, "T"},

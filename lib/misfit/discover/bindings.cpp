@@ -210,16 +210,16 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-/// Each parameter that is free and a port. Where the effect reads what it varies with, once per state and input, but for a parameter of one
-/// equation: that is a product of what is there with these, bilinear. Of small systems, as times_other_states().
+/// Each parameter that is free and a port. Where the effect reads what it varies with, once per state and input, but for a factor of one
+/// state or input in one equation: its variation is a product of two of them, bilinear. Of small systems, as times_other_states().
 std::vector<Roles> varying_parameters(const EffectSpec& effect, const SystemSpec& system) {
   std::vector<Roles> parameters;
   const bool reads = has_role(effect.quantities, "with");
   if (!is_small(system)) return parameters;
   for (const PortSpec& port : system.quantity_ports) {
     const int parameter = index_of(system.constants, port.name);
-    const bool one_equation = !port.conjugate.empty();
-    if (parameter >= 0 && system.constants[parameter].free && !(reads && one_equation)) parameters.push_back({{"parameter", port.name}});
+    const bool bilinear = !port.conjugate.empty();
+    if (parameter >= 0 && system.constants[parameter].free && !(reads && bilinear)) parameters.push_back({{"parameter", port.name}});
   }
   if (!reads) return parameters;
   std::vector<std::string> values = names_of(system.states);

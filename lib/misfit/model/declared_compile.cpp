@@ -312,7 +312,7 @@ class Compiler {
       spec().quantity_ports.push_back({.name = constant.name,
                                        .unit = constant.unit,
                                        .doc = "added to the parameter, wherever it stands",
-                                       .conjugate = only_state_moved_by(out_->leaves.k(k))});
+                                       .conjugate = only_product_in(out_->leaves.k(k))});
     }
     spec().quantities = std::move(all);
     note_namesakes();
@@ -321,12 +321,14 @@ class Compiler {
       throw InputError(declaration_.where, "states, inputs, quantities and outputs are together too many");
     set_roles(declaration_, own_ports_);
   }
-  /// The state whose equation alone reads this leaf; empty: several do, or an output.
-  std::string only_state_moved_by(int leaf) {
+  /// Of a leaf that does nothing but multiply one state or input in one equation: the state that this moves; else empty.
+  std::string only_product_in(int leaf) {
     std::string out;
     for (std::size_t j = 0; j < equation_nodes_.size(); ++j) {
       if (!uses(equation_nodes_[j], leaf)) continue;
-      if (!out.empty()) return "";
+      const std::vector<int> read = graph().leaves_of(graph().derivatives(equation_nodes_[j], {graph().leaf(leaf)}).front());
+      const auto of_motion = std::count_if(read.begin(), read.end(), [&](int other) { return other < out_->leaves.t(); });
+      if (!out.empty() || of_motion > 1) return "";
       out = spec().states[j].name;
     }
     return std::any_of(output_nodes_.begin(), output_nodes_.end(), [&](int node) { return uses(node, leaf); }) ? "" : out;

@@ -52,7 +52,7 @@ struct QuantitySpec {
 
 struct PortSpec {
   std::string name, unit, doc;
-  /// Dynamic ports: quantity whose product with it is power; others: what is changed (of a parameter, the one state whose rate it is in).
+  /// Dynamic ports: quantity whose product with it is power; others: what is changed; of a factor of one state or input, what that moves.
   std::string conjugate = {};
 };
 

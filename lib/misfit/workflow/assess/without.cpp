@@ -32,6 +32,8 @@ std::optional<Without> needless(Session& session, const std::string& effect, dou
 
 std::string why_too_little(const std::optional<double>& drop, const std::optional<double>& held_out_gain, int parameters, double families) {
   const auto tenths = [](double value) { return format_value(std::round(10.0 * value) / 10.0); };
+  constexpr double moved = 0.05;  // of the log-likelihood: a fit that is no better ends where it began, and says nothing of the effect
+  if (drop && *drop < moved) return "its fit finds nothing better than the model without it, and may have failed";
   if (drop && may_be_chance(*drop, parameters, families)) {
     return fmt::format("what it gains may be chance (drop {} with {}, {} among {:g} that were tried)", tenths(*drop),
                        counted(static_cast<std::size_t>(parameters), "parameter", "parameters"),
