@@ -131,7 +131,8 @@ void ship_yaw(const double* x, const double* u, const Values& p, double* dx, dou
 
 void chemostat(const double* x, const double* u, const Values& p, double* dx, double* y) {
   const double X = std::max(x[0], 0.0), S = std::max(x[1], 0.0);
-  const double mu = p("mu_max") * S / (p("Ks") + S) * (1 - p("crowding") * X);
+  const double poisoned = 1 + p("poisoned") * std::sin(p("t") / 9000);
+  const double mu = p("mu_max") * S / (p("Ks") + S) * (1 - p("crowding") * X) * poisoned;
   dx[0] = (mu - u[0]) * X - p("death") * X;
   dx[1] = u[0] * (p("Sin") - S) - mu * X / p("Y") + p("spill");
   y[0] = x[0];

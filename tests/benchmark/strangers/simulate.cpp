@@ -76,7 +76,7 @@ void distort(Series& y, const Series& ends, const Values& hidden, double h) {
     double v = clean[i] + (clean[next] - clean[i]) * (at - static_cast<double>(i));
     if (hidden("lag") > 0.0 && k > 0) lagged += (0.5 * (clean[k - 1] + ends[k - 1]) - lagged) * (1.0 - std::exp(-h / hidden("lag")));
     if (hidden("lag") > 0.0) v = lagged;
-    v *= 1.0 + hidden("fading") * static_cast<double>(k) / static_cast<double>(y.size());
+    v *= 1.0 + hidden("fading") * h * static_cast<double>(k);
     if (hidden("curve") != 0.0) v += hidden("curve") * v * v / largest;
     if (hidden("folded") > 0.0) v = std::abs(v);
     v += hidden("bias");
@@ -173,7 +173,8 @@ Run calm(const World& world) {
 }
 
 double si_of(const std::string& name, double value, const Effect& effect, const World& world, const Run& quiet) {
-  if (effect.site == Site::plant || name == "curve" || name == "fading" || name == "folded") return value;
+  if (effect.site == Site::plant || name == "curve" || name == "folded") return value;
+  if (name == "fading") return value / (world.step * world.samples);
   if (name == "delay" || name == "lag") return value * world.step;
   const auto at = static_cast<std::size_t>(effect.index);
   if (effect.site == Site::input) {
