@@ -190,10 +190,13 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
   return out;
 }
 
-/// A map over anything but the time of the recording says where the model fails: pulses come there, if there are any.
+/// A map over anything but the time of the recording says where the model fails, beyond doubt: pulses come there, if there are any. (Where
+/// they happen to come a few times, as at the heights to which they lift a state, they show in a map, too.)
 bool depends_on_a_quantity(const std::vector<ForceMap>& maps) {
-  return std::any_of(maps.begin(), maps.end(),
-                     [](const ForceMap& map) { return !map.sentence.empty() && map.quantity != time_of_recording; });
+  constexpr double beyond_doubt = 1e-6;
+  return std::any_of(maps.begin(), maps.end(), [](const ForceMap& map) {
+    return !map.sentence.empty() && map.quantity != time_of_recording && map.p_corrected < beyond_doubt;
+  });
 }
 
 void conclude(Diagnosis& out) {

@@ -365,9 +365,14 @@ class Compiler {
 
 std::shared_ptr<const Compiled> compile(Declaration declaration) {
   Compiler compiler(declaration, {});
-  const std::shared_ptr<const Compiled> plain = compiler.run();
+  std::shared_ptr<const Compiled> plain = compiler.run();
   std::vector<int> varied = compiler.constants_that_may_vary();
-  return varied.empty() ? plain : Compiler(std::move(declaration), std::move(varied)).run();
+  if (varied.empty()) return plain;
+  try {
+    return Compiler(std::move(declaration), std::move(varied)).run();
+  } catch (const InputError&) {  // of formulas that are nearly too long: they run, though no parameter may vary
+    return plain;
+  }
 }
 
 }  // namespace misfit::declared
