@@ -64,11 +64,12 @@ Signals reactor(bool varies, unsigned seed) {
   return s;
 }
 
-Discovery found_in(const Signals& signals) {
+Discovery found_in(const Signals& recording) {
+  const std::vector<Signals> signals = {recording};  // the estimate points to it
   const auto systems = registry_with(reactor_text);
   const ModelRequest request = request_of("text");
-  const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, {signals});
-  return discover({estimate, request, *systems, {signals}}, {});
+  const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
+  return discover({estimate, request, *systems, signals}, {});
 }
 
 TEST(ARateConstantThatVaries, IsNamedWithWhatItVariesWith) {
