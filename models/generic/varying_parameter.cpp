@@ -5,26 +5,22 @@ namespace {
 
 using namespace misfit;
 
-/// A parameter of the model is no constant: it changes with a state or an input, in all the equations in which it stands. A reaction is
+/// A parameter of the model is no constant: it changes with a state or an input, wherever it stands. A reaction is
 /// faster where it is warm, in the balance of mass and of heat alike; heat goes over better between two streams that flow faster; a
 /// friction falls as the oil warms.
 struct VaryingParameter {
   static constexpr const char* formula = "F = slope (exp(growth (with - middle)) - 1)/growth, slope (with - middle) where growth = 0";
   static constexpr const char* symbols =
-      "slope [parameter/with], parameter of the system that stands in several of its equations [any], with: a state, or an input as "
-      "recorded "
-      "[any], middle: where the parameter has the value that the model gives it [with], fixed, growth [1/with] of the slope, "
-      "relative to "
-      "itself: fixed at 0 unless it is needed";
+      "slope [parameter/with], parameter of the system [any], with: a state, or an input as recorded [any], middle: where the parameter "
+      "has "
+      "the value that the model gives it [with], fixed, growth [1/with] of the slope relative to itself: fixed at 0 unless it is needed";
   static constexpr const char* valid =
-      "a parameter that changes in proportion to `with` in the range visited (where it does not, slope may be a curve of it); one that "
-      "stands "
-      "in several equations: else it is a force";
+      "a parameter that changes in proportion to `with` in the range visited, or grows or fades exponentially; not a hump";
   static constexpr const char* size = "a rate constant of 0.05 1/min with 73 kJ/mol at 350 K: 7 % per K, 0.0035 1/min/K";
   static constexpr const char* source =
       "Young, Data-based mechanistic modelling (1998): state dependent parameters; Arrhenius: d ln k/dT = E/(R T^2)";
   static constexpr const char* excludes =
-      "a change with time (drift), with the past, or of a parameter that stands in one equation only (bilinear)";
+      "a change with time (drift) or with the past; a factor of one state or input in one equation (its change is bilinear)";
 
   enum Quantity { with };
   static constexpr Role quantities[] = {{.name = "with", .unit = "*"}};

@@ -99,8 +99,8 @@ T = { unit = "K", noise = 0.1 }
   const auto with = [](const char* quantity) { return Roles{{"parameter", "k"}, {"with", quantity}}; };
   EXPECT_THAT(enumerate_bindings(systems->effect("varying_parameter").spec(), systems->system("text").make({})->spec()),
               ElementsAre(with("c"), with("T"), with("cool")));
-  EXPECT_THAT(enumerate_bindings(systems->effect("drifting_parameter").spec(), systems->system("text").make({})->spec()),
-              ElementsAre(Roles{{"parameter", "k"}}, Roles{{"parameter", "heat"}}))
+  EXPECT_THAT(enumerate_bindings(systems->effect("drift").spec(), systems->system("text").make({})->spec()),
+              ElementsAre(Roles{}, Roles{{"port", "dc/dt"}}, Roles{{"port", "dT/dt"}}, Roles{{"port", "k"}}, Roles{{"port", "heat"}}))
       << "what is known does not drift";
   EXPECT_THAT(bindings("varying_parameter", "test_oscillator"), testing::IsEmpty());
 }

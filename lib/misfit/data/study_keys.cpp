@@ -228,7 +228,7 @@ std::vector<KeyGroup> effect_groups() {
       {"effects.NAME", "An effect that the study declares by a formula.",
        {{.name = "formula", .otherwise = "required",
          .meaning = "What the effect adds to the port, as \"-c*x*abs(x)\"; units are checked."},
-        {.name = "port", .otherwise = "required", .meaning = "Port that it adds to, as dx/dt."},
+        {.name = "port", .otherwise = "required", .meaning = "Port that it adds to: dx/dt, or an input, quantity or parameter that it changes."},
         {.name = "strengths", .type = Type::texts, .otherwise = "those in which the formula is linear",
          .meaning = "Parameters that, all 0, switch the effect off."},
         {.name = "parameters", .type = Type::table, .otherwise = "none", .meaning = "Parameters of the formula."},

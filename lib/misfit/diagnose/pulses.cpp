@@ -107,7 +107,7 @@ std::string input_behind(const MissingForce& missing, const std::vector<Stretch>
   return "";
 }
 
-/// "in 11 pulses of 2.5 min to 3 min, all upward, up to 0.0097 K/s, at t = 31 min, 98.5 min, 1.82 h, …".
+/// "what is missing on dT/dt comes in 11 pulses of 2.25 min to 2.75 min, all upward, of up to 0.01 K/s, at t = 1875 s, …: …".
 std::string in_words(const ForcePulses& pulses, const std::string& input) {
   constexpr std::size_t named = 4;
   std::vector<double> lengths;

@@ -173,19 +173,6 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
   return out;
 }
 
-namespace {
-
-/// Inputs at the end of the step from a sample, before the next sample is taken: one that is held has its value still. What it is set to
-/// then may answer to the noise of the next measurement (a controller), and what it acts on is not seen before the one after.
-std::vector<double> inputs_at_end(const InputTable& inputs, std::size_t sample, double length) {
-  std::vector<double> out;
-  for (int i = 0; i < int_size(inputs.recorded.hold); ++i)
-    out.push_back(input_within(inputs.recorded.hold[i], inputs.at(sample), inputs.at(sample + 1), i, 1.0, length).value);
-  return out;
-}
-
-}  // namespace
-
 ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(estimate) {
   const Model model = probed(estimate);
   Stepper stepper(model);
@@ -218,7 +205,8 @@ ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(e
       if (k + 1 == trace.samples) break;
       own_before = x.segment(system, own);
       if (!stepper.step_linear(x.data(), interval_after({stepper, signals, data.inputs}, k), slots, D.data())) break;
-      const std::vector<double> u = inputs_at_end(data.inputs, k, signals.t[k + 1] - signals.t[k]);
+      // An input that is held is set anew only then: perhaps to answer the noise of the next measurement (a controller).
+      const std::vector<double> u = inputs_within(data.inputs, k, 1.0, signals.t[k + 1] - signals.t[k]);
       values.quantities(x.data(), {u.data(), &data.inputs.recorded}, signals.t[k + 1], ahead_.row(offset + k).data());
       own_rates_.row(offset + k) = (x.segment(system, own) - own_before).transpose() / (signals.t[k + 1] - signals.t[k]);
       for (std::size_t i = 0; i < N; ++i) {

@@ -7,6 +7,7 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/units.h"
+#include "misfit/model/declared.h"
 
 namespace misfit {
 namespace {
@@ -152,12 +153,7 @@ std::vector<Roles> times_factors(const std::vector<Roles>& places) {
   return out;
 }
 
-/// Few products of states and inputs are possible. Among the many of a larger system there is one that looks like whatever is missing (of
-/// the velocities of two masses, a square of their difference).
-bool is_small(const SystemSpec& system) {
-  constexpr std::size_t most_states = 3;
-  return system.states.size() <= most_states;
-}
+bool is_small(const SystemSpec& system) { return system.states.size() <= states_of_a_small_system; }
 
 /// Each place whose factor is a state once per other state that may multiply it, each pair once: an input is what sets how strongly a state
 /// acts, and so may another state be (a rate constant and a concentration, a damping that depends on the position). Of small systems.
@@ -210,21 +206,27 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-/// Each parameter that is free and a port. Where the effect reads what it varies with, once per state and input, but for a factor of one
-/// state or input in one equation: its variation is a product of two of them, bilinear. Of small systems, as times_other_states().
-std::vector<Roles> varying_parameters(const EffectSpec& effect, const SystemSpec& system) {
-  std::vector<Roles> parameters;
-  const bool reads = has_role(effect.quantities, "with");
-  if (!is_small(system)) return parameters;
+/// Ports of the free parameters of a small system, as times_other_states(); `factors` too: those that only multiply one state or input in
+/// one equation, so that their dependence on another is a product of two of them, bilinear.
+std::vector<std::string> ports_of_parameters(const SystemSpec& system, bool factors) {
+  std::vector<std::string> out;
+  if (!is_small(system)) return out;
   for (const PortSpec& port : system.quantity_ports) {
     const int parameter = index_of(system.constants, port.name);
-    const bool bilinear = !port.conjugate.empty();
-    if (parameter >= 0 && system.constants[parameter].free && !(reads && bilinear)) parameters.push_back({{"parameter", port.name}});
+    if (parameter >= 0 && system.constants[parameter].free && (factors || port.conjugate.empty())) out.push_back(port.name);
   }
-  if (!reads) return parameters;
+  return out;
+}
+
+/// Each parameter that may vary, once per state and input.
+std::vector<Roles> varying_parameters(const SystemSpec& system) {
   std::vector<std::string> values = names_of(system.states);
   for (const InputSpec& input : system.inputs) values.push_back(input.name);
-  return times(parameters, "with", values);
+  return times(times({{}}, "parameter", ports_of_parameters(system, false)), "with", values);
+}
+
+bool may_be_a_parameter(const EffectSpec& effect) {
+  return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& r) { return r.parameter_too; });
 }
 
 bool is_in_outputs(const SystemSpec& system, const std::string& port) {
@@ -258,10 +260,13 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   std::vector<Roles> out = {{}};
   if (has_role(effect.ports, all_sample_times) && system.inputs.empty()) return {};
   if (has_role(effect.ports, "time_of_output")) return times_of_outputs(system);
-  if (has_role(effect.ports, "parameter")) return varying_parameters(effect, system);
+  if (has_role(effect.ports, "parameter")) return varying_parameters(system);
   if (!is_generic(effect)) return out;
   std::vector<Roles> places = {{}};
   if (has_role(effect.ports, "port") || has_role(effect.ports, "to_port")) places = natural_ports(system);
+  if (may_be_a_parameter(effect)) {
+    for (const std::string& port : ports_of_parameters(system, true)) places.push_back({{"port", port}});
+  }
   if (may_be_an_input(effect, "displacement")) places = with_inputs_that_displace(std::move(places), system);
   if (has_role(effect.ports, "to_port")) {
     std::vector<std::string> ports;

@@ -25,9 +25,10 @@ using Roles = std::map<std::string, std::string>;
 /// `level`. `other_signal` is each other output of the output's unit (with `other_output`: each pair once). `input` is each input, beside a
 /// factor that is a state of a small system also each other state (a product once), and `output` each output (`signal` follows it), if the
 /// system has a default for `input`, or for `signal`: its way of saying that generic effects make sense there. `parameter` is each free
-/// parameter of a small system that is a port; beside `with`, which is each state and input, one that is no factor of one state or input in
-/// one equation. The time of all outputs (`sample_time`) has a place only in a system with inputs: where nothing known has a clock, a
-/// motion at another time is as likely. Units are not looked at otherwise: assemble() refuses what does not suit.
+/// parameter of a small system that is a port, but for factors of one state or input in one equation, `with` each state and input; where
+/// the effect allows that (Role::parameter_too), `port` is also each such parameter, factors too. The time of all outputs (`sample_time`)
+/// has a place only in a system with inputs: where nothing known has a clock, a motion at another time is as likely. Units are not looked
+/// at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
 }  // namespace misfit

@@ -50,7 +50,9 @@ class Along {
         inputs_(recording.inputs),
         evaluator_(model_),
         first_(first_known(states_)),
-        at_(Eigen::VectorXd::Zero(model_.states())) {
+        at_(Eigen::VectorXd::Zero(model_.states())),
+        dx_(model_.states()),
+        D_(model_.states() * kRowStride) {
     set_system_states(first_);
     set_own_states_at_rest(model_, inputs_.at(first_), signals_.t[first_], at_);
     const Eigen::Index system = model_.system_states();
@@ -66,14 +68,12 @@ class Along {
   /// Those with constant A.
   [[nodiscard]] std::vector<Memory> memories() {
     if (memories_.empty()) return {};
-    Slots slots;
-    std::vector<double> dx(model_.states()), D(model_.states() * kRowStride);
     std::vector<bool> linear(memories_.size(), true);
     for (Eigen::Index i = first_; i < states_.x.rows(); ++i) {
       if (!states_.ok[i]) continue;
       set_system_states(i);
-      evaluator_.linearise_rates({at_.data(), inputs_.at(i), signals_.t[i]}, slots, dx.data(), D.data());
-      for (std::size_t m = 0; m < memories_.size(); ++m) linear[m] = linear[m] && take(memories_[m], dx, D, i);
+      linearise(inputs_.at(i), signals_.t[i]);
+      for (std::size_t m = 0; m < memories_.size(); ++m) linear[m] = linear[m] && take(memories_[m], i);
     }
     std::vector<Memory> out;
     for (std::size_t m = 0; m < memories_.size(); ++m) {
@@ -106,30 +106,25 @@ class Along {
 
  private:
   using Derivatives = Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>>;
-  [[nodiscard]] Derivatives derivatives(const std::vector<double>& D) const {
-    return {D.data(), model_.states(), model_.states(), Eigen::OuterStride<>(kRowStride)};
-  }
+  /// Of the rates, by the states, where they were linearised last.
+  [[nodiscard]] Derivatives derivatives() const { return {D_.data(), model_.states(), model_.states(), Eigen::OuterStride<>(kRowStride)}; }
+  void linearise(const InputsAt& u, double t) { evaluator_.linearise_rates({at_.data(), u, t}, slots_, dx_.data(), D_.data()); }
 
   /// Half of the way from a sample to the next, with what is at a share of it.
   void step(Eigen::Index sample, double share) {
     const Eigen::Index system = model_.system_states();
     const double length = signals_.t[sample + 1] - signals_.t[sample];
     at_.head(system) = ((1.0 - share) * states_.x.row(sample).head(system) + share * states_.x.row(sample + 1).head(system)).transpose();
-    std::vector<double> u(model_.inputs());
-    for (int j = 0; j < model_.inputs(); ++j)
-      u[j] = input_within(inputs_.recorded.hold[j], inputs_.at(sample), inputs_.at(sample + 1), j, share, length).value;
-    Slots slots;
-    std::vector<double> dx(model_.states()), D(model_.states() * kRowStride);
-    evaluator_.linearise_rates({at_.data(), {u.data(), &inputs_.recorded}, signals_.t[sample] + share * length}, slots, dx.data(),
-                               D.data());
-    for (const Block& block : nonlinear_) at_.segment(block.first, block.size) += increment(block, dx, D, 0.5 * length);
+    const std::vector<double> u = inputs_within(inputs_, sample, share, length);
+    linearise({u.data(), &inputs_.recorded}, signals_.t[sample] + share * length);
+    for (const Block& block : nonlinear_) at_.segment(block.first, block.size) += increment(block, 0.5 * length);
   }
 
   /// h phi_1(A h) z': the last column of the exponential of [A z'; 0 0] h.
-  [[nodiscard]] Eigen::VectorXd increment(const Block& block, const std::vector<double>& dx, const std::vector<double>& D, double h) const {
+  [[nodiscard]] Eigen::VectorXd increment(const Block& block, double h) const {
     Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(block.size + 1, block.size + 1);
-    augmented.topLeftCorner(block.size, block.size) = h * derivatives(D).block(block.first, block.first, block.size, block.size);
-    augmented.topRightCorner(block.size, 1) = h * Eigen::Map<const Eigen::VectorXd>(dx.data() + block.first, block.size);
+    augmented.topLeftCorner(block.size, block.size) = h * derivatives().block(block.first, block.first, block.size, block.size);
+    augmented.topRightCorner(block.size, 1) = h * Eigen::Map<const Eigen::VectorXd>(dx_.data() + block.first, block.size);
     return Eigen::MatrixXd(augmented.exp()).topRightCorner(block.size, 1);
   }
 
@@ -138,16 +133,16 @@ class Along {
   }
 
   /// False if the effect's own dynamics are not linear with the A of the first sample.
-  bool take(Memory& memory, const std::vector<double>& dx, const std::vector<double>& D, Eigen::Index sample) const {
+  bool take(Memory& memory, Eigen::Index sample) const {
     const Eigen::Index size = memory.A.rows();
-    const Derivatives rows = derivatives(D);
+    const Derivatives rows = derivatives();
     const Eigen::MatrixXd A = rows.block(memory.first, memory.first, size, size);
     if (sample == first_) memory.A = A;
     if (!((A - memory.A).norm() <= constant * memory.A.norm())) return false;
     const Eigen::FullPivLU<Eigen::MatrixXd> inverse(A);
     if (!(inverse.rcond() > singular)) return false;
     if (sample == first_) memory.rest_by_state = -inverse.solve(Eigen::MatrixXd(rows.block(memory.first, 0, size, model_.system_states())));
-    const Eigen::Map<const Eigen::VectorXd> drift(dx.data() + memory.first, size);
+    const Eigen::Map<const Eigen::VectorXd> drift(dx_.data() + memory.first, size);
     memory.rest.row(sample) = (at_.segment(memory.first, size) - inverse.solve(drift)).transpose();
     return memory.rest.row(sample).allFinite();
   }
@@ -159,6 +154,8 @@ class Along {
   Evaluator evaluator_;
   Eigen::Index first_;
   Eigen::VectorXd at_, own_;
+  Slots slots_;
+  std::vector<double> dx_, D_;
   std::vector<Memory> memories_;
   std::vector<Block> nonlinear_;
 };
@@ -213,6 +210,17 @@ Eigen::VectorXd regressors(const Recording& recording, Eigen::Index sample) {
   return Eigen::Map<const Eigen::VectorXd>(out.data(), std::ssize(out));
 }
 
+/// The same at several samples, a row each.
+Eigen::MatrixXd regressors(const Recording& recording, const std::vector<Eigen::Index>& samples) {
+  Eigen::MatrixXd out;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const Eigen::VectorXd row = regressors(recording, samples[k]);
+    if (k == 0) out.resize(std::ssize(samples), row.size());
+    out.row(static_cast<Eigen::Index>(k)) = row.transpose();
+  }
+  return out;
+}
+
 /// Least squares of `values` on what is `known` at the same samples; none if these are too few.
 std::optional<Eigen::MatrixXd> regression(const Eigen::MatrixXd& known, const RowMatrix& values) {
   constexpr Eigen::Index samples_per_coefficient = 5;
@@ -233,13 +241,8 @@ void fill(const Memory& memory, const Recording& recording, OwnStates& out) {
   if (samples.empty()) return;
   const RowMatrix begun_at_rest = departures(memory, recording, Eigen::VectorXd::Zero(size));
   const Eigen::VectorXd at_first = regressors(recording, first);
-  RowMatrix values(samples.size(), size);
-  Eigen::MatrixXd known(samples.size(), at_first.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const Eigen::Index row = k;
-    values.row(row) = begun_at_rest.row(samples[k]);
-    known.row(row) = regressors(recording, samples[k]).transpose();
-  }
+  const RowMatrix values = begun_at_rest(samples, Eigen::all);
+  const Eigen::MatrixXd known = regressors(recording, samples);
   const Eigen::VectorXd sigma = (values.colwise().squaredNorm() / static_cast<double>(values.rows())).cwiseSqrt().transpose();
   const std::optional<Eigen::MatrixXd> coefficients = regression(known, values);
   Eigen::VectorXd start = coefficients ? Eigen::VectorXd(coefficients->transpose() * at_first) : Eigen::VectorXd::Zero(size);
@@ -256,7 +259,7 @@ void fill(const Memory& memory, const Recording& recording, OwnStates& out) {
   }
 }
 
-/// Samples known and of the fit in the later half of the recording, or of what follows the last gap in it.
+/// Samples known and of the fit in the later half of the recording, where the beginning is forgotten.
 std::vector<Eigen::Index> later_half(const Recording& recording) {
   const auto& [model, signals, states, inputs] = recording;
   std::vector<Eigen::Index> out;
@@ -277,8 +280,7 @@ struct Beginning {
 
 Beginning beginning(const Recording& recording, const std::vector<Eigen::Index>& samples, const RowMatrix& values) {
   const Eigen::VectorXd at = regressors(recording, first_known(recording.states));
-  Eigen::MatrixXd known(samples.size(), at.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) known.row(static_cast<Eigen::Index>(k)) = regressors(recording, samples[k]).transpose();
+  const Eigen::MatrixXd known = regressors(recording, samples);
   const Eigen::RowVectorXd mean = values.colwise().mean();
   const RowMatrix departures = values.rowwise() - mean;
   const auto largest = [](const RowMatrix& rows) -> Eigen::VectorXd { return rows.cwiseAbs().colwise().maxCoeff().transpose(); };

@@ -8,6 +8,10 @@
 
 namespace misfit {
 
+/// Few products of states, inputs and parameters are possible in a system of so many states. Among the many of a larger one there is one
+/// that looks like whatever is missing (of the velocities of two masses, a square of their difference).
+inline constexpr std::size_t states_of_a_small_system = 3;
+
 /// A system declared as text (TOML); its keys: declared_keys.cpp, misfit help system. Formulas: misfit/formula; units are checked through
 /// them, SI and radians. Every equation also has the dynamic port dSTATE/dt, whose conjugate is the state. Every input and quantity is a
 /// quantity port as well; an input before such changes is the quantity NAME_given. So is every parameter that stands in

@@ -6,6 +6,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
+#include "misfit/model/declared.h"
 #include "misfit/model/declared_system.h"
 #include "misfit/model/limits.h"
 
@@ -37,7 +38,6 @@ class Compiler {
   /// Once it has run: numbers of the constants on which an effect acts as no force does. It stands in several equations and outputs; or, in
   /// a small system, what it does depends on states or inputs. As many as there is room for.
   std::vector<int> constants_that_may_vary() {
-    constexpr std::size_t small = 3;
     std::vector<int> nodes = equation_nodes_, out;
     nodes.insert(nodes.end(), output_nodes_.begin(), output_nodes_.end());
     const std::size_t room = kMaxPorts - out_->spec.quantity_ports.size();
@@ -51,7 +51,7 @@ class Compiler {
         depends = depends || depends_on_motion(graph().derivatives(node, {graph().leaf(leaf)}).front());
       }
       const bool of_output = index_of(out_->spec.outputs, out_->spec.constants[k].name) >= 0;
-      if (!of_output && (places > 1 || (depends && out_->spec.states.size() <= small))) out.push_back(k);
+      if (!of_output && (places > 1 || (depends && out_->spec.states.size() <= states_of_a_small_system))) out.push_back(k);
     }
     return out;
   }

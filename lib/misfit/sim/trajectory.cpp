@@ -114,6 +114,13 @@ bool predict_linear(const Simulation& simulation, std::size_t i, State& at, Segm
 
 }  // namespace
 
+std::vector<double> inputs_within(const InputTable& inputs, std::size_t sample, double share, double length) {
+  std::vector<double> out;
+  for (int i = 0; i < std::ssize(inputs.recorded.hold); ++i)
+    out.push_back(input_within(inputs.recorded.hold[i], inputs.at(sample), inputs.at(sample + 1), i, share, length).value);
+  return out;
+}
+
 Interval interval_after(const Simulation& run, std::size_t i) {
   const auto& [stepper, signals, inputs] = run;
   return {signals.t[i], signals.t[i + 1], inputs.at(i), inputs.at(i + 1), inputs.plan.of(i), inputs.plan.rate_at(i)};

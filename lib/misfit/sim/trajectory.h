@@ -22,6 +22,9 @@ struct InputTable {
   }
 };
 [[nodiscard]] InputTable input_table(const Signals& signals, const Model& model);
+/// All inputs at a share (0 … 1) of the way of `length` [s] from a sample to the next, as their holds say: one that is held has its value
+/// still at the end.
+[[nodiscard]] std::vector<double> inputs_within(const InputTable& inputs, std::size_t sample, double share, double length);
 
 /// What is run: a model on the inputs of a recording. The parameters are those the stepper's evaluator holds.
 struct Simulation {

@@ -43,7 +43,9 @@ std::optional<Diagnosis> diagnose_stage(Session& session) {
 }
 
 bool lacks_pulses_only(Session& session) {
-  return !filter_declined(session) && diagnose(*filter_work(session)->estimate, {session.options.threads, {}}).pulses.has_value();
+  if (filter_declined(session)) return false;
+  const std::optional<Diagnosis> known = known_diagnosis(session);
+  return (known ? *known : diagnose(*filter_work(session)->estimate, {session.options.threads, {}})).pulses.has_value();
 }
 
 }  // namespace misfit
