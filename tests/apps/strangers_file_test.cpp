@@ -80,7 +80,7 @@ Verdict verdict_on(const std::string& name, const std::string& text) {
 TEST(StrangersFile, OfAMotorWithDryFrictionItNamesTheFriction) {
   const Verdict v = verdict_on("motor", motor());
   EXPECT_THAT(v.model, HasSubstr("w = \"(w_rest + w_gain_u*u - w)/w_tau\""));
-  EXPECT_THAT(v.sentence, testing::StartsWith("coulomb_friction was missing"));
+  EXPECT_THAT(v.sentence, testing::StartsWith("coulomb_friction (port = dw/dt, rate = w) was missing"));
 }
 
 TEST(StrangersFile, OfAHouseItTakesTheWeatherAsAnInputAndAddsNothing) {
@@ -94,7 +94,8 @@ TEST(StrangersFile, OfAHeaterItTakesTheInletAsAnInputAndNamesWhatTheFlowDoes) {
   const Verdict v = verdict_on("heater", heater());
   EXPECT_THAT(v.model, HasSubstr("T_in = { unit = \"K\""));
   EXPECT_THAT(v.model, HasSubstr("T_out = \"(T_out_rest"));
-  EXPECT_THAT(v.sentence, testing::StartsWith("bilinear_exchange was missing"));
+  EXPECT_THAT(v.sentence,
+              testing::StartsWith("bilinear_exchange (input = flow, level = T_out, other = T_in, port = dT_out/dt) was missing"));
 }
 
 }  // namespace

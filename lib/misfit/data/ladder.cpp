@@ -40,11 +40,7 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
 
 int parameters_added(const Rung& rung) { return rung.new_parameters.value_or(static_cast<int>(rung.parameters.size())); }
 
-std::string added_in_words(const Rung& rung, const Ladder& ladder) {
-  const auto of_kind = std::count_if(ladder.rungs.begin(), ladder.rungs.end(), [&](const Rung& r) { return r.added == rung.added; });
-  const bool unknown_form = rung.roles && rung.roles->contains("of");
-  return of_kind > 1 || unknown_form ? effect_at(rung.added, rung.roles.value_or(std::map<std::string, std::string>{})) : rung.added;
-}
+std::string added_in_words(const Rung& rung) { return effect_at(rung.added, rung.roles.value_or(std::map<std::string, std::string>{})); }
 
 void write_ladder(const std::filesystem::path& path, const Ladder& ladder) { write_json(path, ladder.rungs); }
 

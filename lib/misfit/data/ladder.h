@@ -50,8 +50,8 @@ struct Ladder {
 /// What the drop of a rung is tested with: its new_parameters, else the number of its parameters.
 [[nodiscard]] int parameters_added(const Rung& rung);
 
-/// What was added, in words: its key, and its place where the key alone does not say it: a force of unknown form, one of several of a kind.
-[[nodiscard]] std::string added_in_words(const Rung& rung, const Ladder& ladder);
+/// What was added, in words: its key, and its place where that is not its default one.
+[[nodiscard]] std::string added_in_words(const Rung& rung);
 
 /// ladder.json: an array.
 void write_ladder(const std::filesystem::path& path, const Ladder& ladder);

@@ -271,7 +271,7 @@ Blocks rung_blocks(const Ladder& ladder, const Rung& rung) {
 Blocks blocks_of(const Ladder& ladder, const Rung& rung, const Fit& fit) {
   const Rung* parent = parent_of(ladder, rung);
   Blocks out;
-  out.heading(fmt::format("Rung {}: {} added to {}", rung.id, added_in_words(rung, ladder), parent != nullptr ? parent->system : ""));
+  out.heading(fmt::format("Rung {}: {} added to {}", rung.id, added_in_words(rung), parent != nullptr ? parent->system : ""));
   out.append(rung_blocks(ladder, rung));
   out.warnings(fit.warnings);
   return out;
@@ -286,11 +286,10 @@ Blocks blocks_of(const Ladder& ladder) {
       columns(std::string(">rung|added|system|>predicted drop|>actual drop|>held-out gain|random force") + (trims ? "|trim" : ""))};
   std::vector<std::string> remarks;
   for (const Rung& r : ladder.rungs) {
-    table.rows.push_back({std::to_string(r.id), r.added.empty() ? "(the study)" : added_in_words(r, ladder), r.system,
-                          shown_drop(r.predicted_drop), shown_drop(r.actual_drop), gain_in_table(r), force_text(r.force)});
+    table.rows.push_back({std::to_string(r.id), r.added.empty() ? "(the study)" : added_in_words(r), r.system, shown_drop(r.predicted_drop),
+                          shown_drop(r.actual_drop), gain_in_table(r), force_text(r.force)});
     if (trims) table.rows.back().push_back(shown(r.trim));
-    if (!r.parameters.empty())
-      remarks.push_back(fmt::format("Rung {}, {}: {}.", r.id, added_in_words(r, ladder), values_text(r.parameters)));
+    if (!r.parameters.empty()) remarks.push_back(fmt::format("Rung {}, {}: {}.", r.id, added_in_words(r), values_text(r.parameters)));
     if (!r.note.empty()) remarks.push_back(as_sentence(fmt::format("Rung {}: {}", r.id, r.note)));
   }
   out.table(std::move(table));

@@ -49,7 +49,7 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     for (auto& [name, estimate] : now) {
       if (last.estimates && last.estimates->contains(name)) estimate = last.estimates->at(name);
     }
-    std::string line = added_in_words(rung, ladder) + ": " + values_of(now);
+    std::string line = added_in_words(rung) + ": " + values_of(now);
     if (&rung != &last && values_of(now) != values_of(rung.parameters))
       line += fmt::format(" in the last model ({} in rung {})", values_of(rung.parameters), rung.id);
     if (rung.kept) line += "; " + *rung.kept;

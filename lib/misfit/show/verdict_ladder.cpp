@@ -87,7 +87,7 @@ bool is_of_the_hold(const std::optional<std::string>& also) { return also && als
 std::string names_added(const Ladder& ladder) {
   std::vector<std::string> names;
   for (const Rung& rung : ladder.rungs) {
-    if (!rung.added.empty()) names.push_back(added_in_words(rung, ladder));
+    if (!rung.added.empty()) names.push_back(added_in_words(rung));
   }
   return join_words(names);
 }
@@ -99,7 +99,7 @@ std::vector<std::string> added_in_clauses(const AddedWork& work) {
        {Evidence::needed, Evidence::of_the_hold, Evidence::a_part, Evidence::untested, Evidence::predicts_worse, Evidence::chance}) {
     std::vector<std::string> names;
     for (const Rung& rung : work.ladder.rungs) {
-      if (!rung.added.empty() && evidence_for(rung, work.something_remains) == evidence) names.push_back(added_in_words(rung, work.ladder));
+      if (!rung.added.empty() && evidence_for(rung, work.something_remains) == evidence) names.push_back(added_in_words(rung));
     }
     if (names.empty()) continue;
     const Words words = evidence == Evidence::needed ? words_of_needed(work) : words_of(evidence);
@@ -120,7 +120,7 @@ std::vector<std::string> doubts_in_clauses(const Ladder& ladder, const std::vect
     out.push_back("in the last model " + join_words(first) + ", so that what was added may stand for something else");
   }
   if (const Rung* first = begun_with(ladder))
-    out.push_back(added_in_words(*first, ladder) +
+    out.push_back(added_in_words(*first) +
                   " was begun with though by itself it left a lack of fit, so that it may stand for something else");
   return out;
 }
