@@ -303,6 +303,20 @@ TEST(CandidateToBeginWith, GainsMostInAllOfThoseBesideWhichSomethingRemains) {
   EXPECT_EQ(candidate_to_begin_with(d)->effect, "cubic_damping");
 }
 
+/// The curve holds the line, which could only stand in its way.
+TEST(CandidateToBeginWith, IsNoPartOfTheChangeOfAParameterThatIsFound) {
+  Candidate line = imitation("varying_parameter", 300.0, 190.0);
+  line.ports = {"Bl"};
+  line.roles = {{"parameter", "Bl"}, {"with", "x"}};
+  Discovery d = of_unknown_form({line});
+  d.unexplained_port = "Bl";
+  d.unexplained_quantity = "x";
+  d.unexplained_parameter = true;
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+  d.unexplained_quantity = "v";
+  EXPECT_NE(candidate_to_begin_with(d), nullptr) << "a change with something else";
+}
+
 TEST(CandidateToBeginWith, ActsWhereTheModelFails) {
   Discovery d = of_unknown_form({imitation("sensor_lag", 310.0, 20.0)});
   d.candidates.front().ports = {"y"};

@@ -5,11 +5,14 @@
 #include "misfit/diagnose/features.h"
 #include "misfit/math/statistics.h"
 #include "tests/fit/cart_filter.h"
+#include "tests/model/declared_texts.h"
 
 namespace misfit {
 namespace {
 
 using namespace testing_cart;
+using testing_models::registry_with;
+using testing_models::request_of;
 
 /// An estimate that is nothing but linear least squares: residuals and derivatives of one free parameter.
 FilterEstimate linear_estimate(const Eigen::VectorXd& r, const Eigen::VectorXd& column) {
@@ -122,6 +125,45 @@ TEST(ForceSensitivity, OfAConstantIsTheColumnOfAConstantForce) {
   EXPECT_LT((weight * columns - jacobian.J).norm(), 1e-8 * jacobian.J.norm());
   // The score of single steps adds up to that of the constant force.
   EXPECT_NEAR(force.score_of_steps(0).sum(), -columns.col(0).dot(jacobian.r), 1e-6 * columns.norm() * jacobian.r.norm());
+}
+
+/// Of a parameter that stands in an equation and in an output: a change of one unit over every step and at every sample is the parameter's
+/// own column.
+TEST(ForceSensitivity, OfAConstantChangeIsTheColumnOfTheParameter) {
+  const auto systems = registry_with(R"toml(
+[states]
+x = { unit = "m", scale = 1.0 }
+[inputs]
+u = { unit = "m/s" }
+[parameters]
+k = { unit = "1/m/s", value = 0.5, bounds = [0.0, 9.0], free = true }
+delay = { unit = "s", value = 0.1 }
+[equations]
+x = "u - k*x*abs(x)"
+[outputs]
+y = { unit = "m", noise = 0.05, formula = "x + delay*k*x^2" }
+)toml");
+  Signals s;
+  s.name = "run";
+  s.measured = {{"y", "m", {}, 0.0}};
+  s.inputs = {{"u", "m/s", {}, 0.0}};
+  for (int n = 0; n < 200; ++n) {
+    s.t.push_back(0.1 * n);
+    s.inputs[0].values.push_back(1.0 + std::sin(0.07 * n));
+    s.measured[0].values.push_back(1.3 + 0.6 * std::sin(0.07 * n - 0.5) + 0.05 * std::cos(2.3 * n * n));
+  }
+  const std::vector<Signals> recordings = {s};
+  FilterOptions options;
+  options.verify = false;
+  const FilterEstimate estimate = estimate_filter(assemble(request_of("text"), *systems), {}, recordings, options);
+  const int k = index_of(estimate.model.system->spec().quantity_ports, "k");
+  ASSERT_GE(k, 0);
+  const ForceSensitivity force(estimate, {k});
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(200, 1);
+  const Eigen::VectorXd own = estimate.jacobians.at(0).J.col(0), column = force.columns_at(PortKind::quantity, 0, ones, ones).col(0);
+  ASSERT_EQ(own.size(), column.size());
+  EXPECT_GT(own.norm(), 1.0);
+  EXPECT_LT((own - column).norm(), 1e-6 * own.norm());
 }
 
 ParameterRequest start(double value, bool free) {

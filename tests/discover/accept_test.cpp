@@ -126,7 +126,8 @@ TEST(UnknownSurfaces, ShowAForceThatDependsOnTwoQuantitiesAndNothingWhereThereIs
 /// Of outputs, and of forces.
 std::pair<std::vector<UnknownCurve>, std::vector<UnknownCurve>> errors_and_forces(const World& world) {
   std::vector<UnknownCurve> errors = unknown_curves({world.estimate, ScoreTest(world.estimate), ForceSensitivity(world.estimate)}), forces;
-  const auto first_force = std::stable_partition(errors.begin(), errors.end(), [](const UnknownCurve& c) { return c.of_output; });
+  const auto first_force =
+      std::stable_partition(errors.begin(), errors.end(), [](const UnknownCurve& c) { return c.kind == PortKind::sensor; });
   forces.assign(first_force, errors.end());
   errors.erase(first_force, errors.end());
   return {errors, forces};
@@ -179,7 +180,7 @@ TEST(UnknownErrors, OfACalibratedCameraAreNotLookedFor) {
   EXPECT_EQ(of_camera.size(), count_of_unknown_curves(calibrated));
   EXPECT_EQ(unknown_curves(work).size(), count_of_unknown_curves(work));
   EXPECT_LT(of_camera.size(), count_of_unknown_curves(work));
-  for (const UnknownCurve& curve : of_camera) EXPECT_FALSE(curve.of_output) << curve.label();
+  for (const UnknownCurve& curve : of_camera) EXPECT_NE(curve.kind, PortKind::sensor) << curve.label();
 }
 
 /// The drive follows what is asked for at a limited rate: not as a lag does, of which the rate is in proportion to what is left.
@@ -350,7 +351,7 @@ TEST(Accept, NothingIsChosenPastAnUnknownFormWorthTwiceAsMuch) {
     curve.result.chi2 = share * ranked[0].refit->drop + 2.0 * curve.result.dof;
     const auto unknown = accept_best(ranked, {curve}, {world.estimate, registry(), world.signals, world.options, world.families()});
     EXPECT_EQ(unknown.has_value(), !ranked[0].candidate.accepted) << ranked[0].candidate.why;
-    EXPECT_TRUE(!unknown || (unknown->port == "force" && unknown->quantity == "x" && !unknown->of_output));
+    EXPECT_TRUE(!unknown || (unknown->port == "force" && unknown->quantity == "x" && unknown->kind == PortKind::dynamic));
     return ranked[0].candidate;
   };
   EXPECT_TRUE(accepted_beside(1.9).accepted);

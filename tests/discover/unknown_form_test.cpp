@@ -14,19 +14,19 @@ using namespace testing_models;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-UnknownCurve curve(const std::string& port, const std::string& quantity, double log_p, bool of_output = false) {
+UnknownCurve curve(const std::string& port, const std::string& quantity, double log_p, PortKind kind = PortKind::dynamic) {
   UnknownCurve out;
   out.port = port;
   out.quantity = quantity;
   out.log_p = log_p;
-  out.of_output = of_output;
+  out.kind = kind;
   return out;
 }
 
 /// "unknown_force of x1 on dx2/dt"
 std::vector<std::string> effects(const UnknownCurve& unexplained) {
   const std::vector<UnknownCurve> screened = {curve("dx1/dt", "x1", -90.0), curve("dx2/dt", "x1", -20.0),  curve("dx2/dt", "x2", -50.0),
-                                              curve("dx2/dt", "t", -70.0),  curve("y", "x1", -60.0, true), curve("y", "x2", -10.0, true)};
+                                              curve("dx2/dt", "t", -70.0),  curve("y", "x1", -60.0, PortKind::sensor), curve("y", "x2", -10.0, PortKind::sensor)};
   std::vector<std::string> out;
   for (const EffectPlace& place :
        effects_of_unknown_form(unexplained, screened, registry().system("test_tanks").make({})->spec(), registry()))
@@ -39,7 +39,7 @@ TEST(EffectsOfUnknownForm, OfAForceIsTheCurveOfItsQuantityOnItsPort) {
 }
 
 TEST(EffectsOfUnknownForm, OfAnErrorIsThatOfItsOutput) {
-  EXPECT_THAT(effects(curve("y", "x2", -30.0, true)), ElementsAre("unknown_error (of = x2, output = y)"));
+  EXPECT_THAT(effects(curve("y", "x2", -30.0, PortKind::sensor)), ElementsAre("unknown_error (of = x2, output = y)"));
 }
 
 TEST(EffectsOfUnknownForm, OfASurfaceAreTheCurvesOfBothQuantitiesTheStrongerFirst) {

@@ -81,8 +81,9 @@ void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
   json("verdict", d.verdict), json("sentences", d.sentences), json("tried", d.tried), json("not_tried", d.not_tried),
       json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
-  json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error), json("held", d.fixed_parameters),
-      json("sweep_asks", d.sweep_asks), json("added_force", stored.added);
+  json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error),
+      json("unexplained_parameter", d.unexplained_parameter), json("held", d.fixed_parameters), json("sweep_asks", d.sweep_asks),
+      json("added_force", stored.added);
   json("seconds", d.seconds);
 }
 
@@ -121,6 +122,12 @@ namespace {
 bool is_tested_curve(const Candidate& c) { return c.family == CandidateFamily::unknown && !c.absorbed; }
 bool is_tested_effect(const Candidate& c) { return c.family != CandidateFamily::unknown && !c.absorbed; }
 
+/// Of the same change of a parameter with the same quantity a curve is the whole, and the line or exponential that falls short a part.
+bool is_part_of_unexplained(const Candidate& c, const Discovery& discovery) {
+  return discovery.unexplained_parameter &&
+         std::any_of(c.roles.begin(), c.roles.end(), [&](const auto& role) { return role.second == discovery.unexplained_quantity; });
+}
+
 }  // namespace
 
 std::size_t effects_tested(const Discovery& discovery) {
@@ -137,7 +144,7 @@ const Candidate* candidate_to_begin_with(const Discovery& discovery) {
   const Candidate* best = nullptr;
   for (const Candidate& c : discovery.candidates) {
     const bool there = std::find(c.ports.begin(), c.ports.end(), discovery.unexplained_port) != c.ports.end();
-    if (!there || !c.remaining || !c.actual_drop || !c.held_out_gain) continue;
+    if (!there || is_part_of_unexplained(c, discovery) || !c.remaining || !c.actual_drop || !c.held_out_gain) continue;
     if (best == nullptr || gain_in_all(c) > gain_in_all(*best)) best = &c;
   }
   if (best == nullptr) return nullptr;
@@ -168,7 +175,8 @@ std::vector<std::string> not_tried_in_words(const Discovery& discovery) {
 }
 
 std::string unexplained_place(const Discovery& discovery) {
-  return (discovery.unexplained_error ? "an error of " : "a force on ") + discovery.unexplained_port;
+  const char* what = discovery.unexplained_error ? "an error of " : discovery.unexplained_parameter ? "a change of " : "a force on ";
+  return what + discovery.unexplained_port;
 }
 
 namespace {

@@ -112,7 +112,8 @@ struct Discovery {
   /// Effects that would add it to the model as a curve of one quantity: of the one that explains most alone first. Empty: nothing is
   /// unexplained, or it is not of that kind.
   std::vector<EffectPlace> unexplained_effects;
-  bool unexplained_error = false;  ///< not a force: an error of the output unexplained_port
+  bool unexplained_error = false;      ///< not a force: an error of the output unexplained_port
+  bool unexplained_parameter = false;  ///< not a force: a change of the parameter unexplained_port
   /// Numbers of the system that the study fixes and that, freed, would explain about as much as the best effect does, in words: the most
   /// significant first; missing: none.
   std::optional<std::vector<std::string>> fixed_parameters;
@@ -124,7 +125,8 @@ struct Discovery {
 [[nodiscard]] double gain_in_all(const Candidate& candidate);
 
 /// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain
-/// (gain_in_all) of those that act where the model fails. nullptr: there is none, a curve of unknown form explains more, or a refitted
+/// (gain_in_all) of those that act where the model fails, but not a part of what is unexplained (a parameter that changes along a line with
+/// the quantity of which it is found to be a curve). nullptr: there is none, a curve of unknown form explains more, or a refitted
 /// candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
 
@@ -138,7 +140,7 @@ struct Discovery {
 /// Of each effect that could not be looked for: "overflow: not tried: input 'u' is not recorded".
 [[nodiscard]] std::vector<std::string> not_tried_in_words(const Discovery& discovery);
 
-/// "a force on dw/dt", "an error of V".
+/// "a force on dw/dt", "an error of V", "a change of Bl".
 [[nodiscard]] std::string unexplained_place(const Discovery& discovery);
 
 /// candidates.json (an array), discovery.json (outcome, verdict, sentences, tried) and added_force.csv (added_force_NAME.csv for further

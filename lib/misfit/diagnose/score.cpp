@@ -1,7 +1,9 @@
 #include "misfit/diagnose/score.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "misfit/core/lists.h"
 #include "misfit/core/watch.h"
@@ -27,22 +29,26 @@ struct Probe {
   static std::vector<Example> examples() { return {{.coefficients = {2.0}, .ports = {2.0}, .source = "by hand"}}; }
 };
 
-/// The forced model with a probe on every dynamic port; only the probes are free, in the order of the ports.
-Model probed(const FilterEstimate& estimate) {
+void add_probe(PortKind kind, int port, const PortSpec& spec, Model& model) {
   static const EffectOf<Probe> effect("probe");
+  BoundEffect bound;
+  bound.effect = &effect;
+  bound.name = "probe_" + spec.name;
+  bound.kind = kind;
+  bound.ports = {port};
+  bound.coefficients = {{int_size(model.parameters), -1}};
+  bound.first_state = int_size(model.own_states);
+  Parameter unit{.name = bound.name, .unit = spec.unit, .doc = "", .lower = -1e12, .upper = 1e12, .free = true};
+  model.parameters.push_back(unit);
+  model.effects.push_back(std::move(bound));
+}
+
+/// The forced model with a probe on every dynamic port, then on these quantity ports; only the probes are free, in that order.
+Model probed(const FilterEstimate& estimate, const std::vector<int>& parameters) {
   Model model = all_fixed(estimate.forced.model);
-  const auto& ports = model.system->spec().dynamic_ports;
-  for (int p = 0; p < int_size(ports); ++p) {
-    BoundEffect bound;
-    bound.effect = &effect;
-    bound.name = "probe_" + ports[p].name;
-    bound.ports = {p};
-    bound.coefficients = {{int_size(model.parameters), -1}};
-    bound.first_state = int_size(model.own_states);
-    Parameter unit{.name = bound.name, .unit = ports[p].unit, .doc = "", .lower = -1e12, .upper = 1e12, .free = true};
-    model.parameters.push_back(unit);
-    model.effects.push_back(std::move(bound));
-  }
+  const SystemSpec& system = model.system->spec();
+  for (int p = 0; p < int_size(system.dynamic_ports); ++p) add_probe(PortKind::dynamic, p, system.dynamic_ports[p], model);
+  for (const int p : parameters) add_probe(PortKind::quantity, p, system.quantity_ports[p], model);
   return model;
 }
 
@@ -173,57 +179,87 @@ ScoreResult ScoreTest::test(const Eigen::MatrixXd& C, const ColumnPriors* priors
   return out;
 }
 
-ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate) : estimate_(estimate) {
-  const Model model = probed(estimate);
+ForceSensitivity::ForceSensitivity(const FilterEstimate& estimate, std::vector<int> parameters)
+    : estimate_(estimate), parameters_(std::move(parameters)) {
+  const Model model = probed(estimate, parameters_);
   Stepper stepper(model);
-  Evaluator values(estimate.forced.model);
   ports_ = int_size(model.system->spec().dynamic_ports);
+  places_ = ports_ + int_size(parameters_);
   const Eigen::Index nq = model.system->spec().quantities.size();
-  const int n = stepper.states();
-  const std::size_t N = n, NF = ports_;
   std::size_t all = 0;
   for (const auto& trace : estimate.traces) all += trace.samples;
   quantities_ = ahead_ = RowMatrix::Zero(all, nq);
-  const Eigen::Index system = estimate.model.system_states(), own = estimate.model.own_states.size();
-  own_rates_ = RowMatrix::Zero(all, own);
+  own_rates_ = RowMatrix::Zero(all, int_size(estimate.model.own_states));
   used_.assign(all, false);
+  std::size_t offset = 0;
+  for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
+    run_steps(stepper, e, offset);
+    note_outputs(stepper, e);
+    offset += estimate.traces[e].samples;
+  }
+}
+
+void ForceSensitivity::run_steps(Stepper& stepper, std::size_t experiment, std::size_t offset) {
+  const FilterTrace& trace = estimate_.traces[experiment];
+  const FilterData& data = estimate_.data[experiment];
+  const Signals& signals = *data.signals;
+  Evaluator values(estimate_.forced.model);
+  const std::size_t N = stepper.states(), NF = places_;
+  const Eigen::Index system = estimate_.model.system_states(), own = own_rates_.cols();
   std::vector<double> D(N * kRowStride);
   Slots slots;
   Eigen::VectorXd x, own_before(own);
-  std::size_t offset = 0;
-  for (std::size_t e = 0; e < estimate.traces.size(); ++e) {
-    const FilterTrace& trace = estimate.traces[e];
-    const FilterData& data = estimate.data[e];
-    const Signals& signals = *data.signals;
-    G_.emplace_back(trace.samples * N * NF, 0.0);
-    times_.insert(times_.end(), signals.t.begin(), signals.t.end());
-    prepare_at({stepper, signals, data.inputs}, data.first, data.start.data());
-    for (std::size_t k = data.first; k < trace.samples; ++k) {
-      x = trace.filtered(k);
-      used_[offset + k] = true;
-      values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(offset + k).data());
-      if (k + 1 == trace.samples) break;
-      own_before = x.segment(system, own);
-      if (!stepper.step_linear(x.data(), interval_after({stepper, signals, data.inputs}, k), slots, D.data())) break;
-      // An input that is held is set anew only then: perhaps to answer the noise of the next measurement (a controller).
-      const std::vector<double> u = inputs_within(data.inputs, k, 1.0, signals.t[k + 1] - signals.t[k]);
-      values.quantities(x.data(), {u.data(), &data.inputs.recorded}, signals.t[k + 1], ahead_.row(offset + k).data());
-      own_rates_.row(offset + k) = (x.segment(system, own) - own_before).transpose() / (signals.t[k + 1] - signals.t[k]);
-      for (std::size_t i = 0; i < N; ++i) {
-        for (int c = 0; c < slots.count(); ++c) G_.back()[(k * N + i) * NF + slots.column(c)] = D[i * kRowStride + N + c];
+  G_.emplace_back(trace.samples * N * NF, 0.0);
+  times_.insert(times_.end(), signals.t.begin(), signals.t.end());
+  prepare_at({stepper, signals, data.inputs}, data.first, data.start.data());
+  for (std::size_t k = data.first; k < trace.samples; ++k) {
+    x = trace.filtered(k);
+    used_[offset + k] = true;
+    values.quantities(x.data(), data.inputs.at(k), signals.t[k], quantities_.row(offset + k).data());
+    if (k + 1 == trace.samples) break;
+    own_before = x.segment(system, own);
+    if (!stepper.step_linear(x.data(), interval_after({stepper, signals, data.inputs}, k), slots, D.data())) break;
+    // An input that is held is set anew only then: perhaps to answer the noise of the next measurement (a controller).
+    const std::vector<double> u = inputs_within(data.inputs, k, 1.0, signals.t[k + 1] - signals.t[k]);
+    values.quantities(x.data(), {u.data(), &data.inputs.recorded}, signals.t[k + 1], ahead_.row(offset + k).data());
+    own_rates_.row(offset + k) = (x.segment(system, own) - own_before).transpose() / (signals.t[k + 1] - signals.t[k]);
+    for (std::size_t i = 0; i < N; ++i) {
+      for (int c = 0; c < slots.count(); ++c) G_.back()[(k * N + i) * NF + slots.column(c)] = D[i * kRowStride + N + c];
+    }
+  }
+}
+
+/// At the predicted states, as the filter linearises the outputs.
+void ForceSensitivity::note_outputs(Stepper& stepper, std::size_t experiment) {
+  const FilterTrace& trace = estimate_.traces[experiment];
+  const FilterData& data = estimate_.data[experiment];
+  Y_.emplace_back();
+  const SystemSpec& system = estimate_.model.system->spec();
+  const bool read = std::any_of(parameters_.begin(), parameters_.end(), [&](int p) {
+    const auto& ports = system.ports_in_outputs;
+    return std::find(ports.begin(), ports.end(), system.quantity_ports[p].name) != ports.end();
+  });
+  if (!read) return;
+  Evaluator& evaluator = stepper.evaluator();
+  const std::size_t N = stepper.states(), NY = trace.ny, NP = parameters_.size(), places = evaluator.sensor_ports();
+  std::vector<double> y(places), D(places * kRowStride);
+  Slots slots;
+  Y_.back().assign(trace.samples * NY * NP, 0.0);
+  for (std::size_t k = data.first; k < trace.samples; ++k) {
+    slots.clear();
+    evaluator.linearise_outputs({trace.predicted_at(k).data(), data.inputs.at(k), data.signals->t[k]}, slots, y.data(), D.data());
+    for (std::size_t o = 0; o < NY; ++o) {
+      for (int c = 0; c < slots.count(); ++c) {
+        const int parameter = slots.column(c) - ports_;
+        if (parameter >= 0) Y_.back()[(k * NY + o) * NP + parameter] = D[o * kRowStride + N + c];
       }
     }
-    offset += trace.samples;
   }
 }
 
 namespace {
 
-/// A sample of an experiment, and its place among those of all.
-struct SamplePlace {
-  std::size_t experiment = 0, sample = 0;
-  Eigen::Index of_all = 0;
-};
+using SamplePlace = ForceSensitivity::SamplePlace;
 
 /// Response of the whitened residuals to m disturbances, the gains fixed: `to_output(place, output, v)` adds them to the prediction of an
 /// output, `to_states(place, s)` to the states at the end of the step that follows a sample.
@@ -278,33 +314,52 @@ Eigen::MatrixXd response(const FilterEstimate& estimate, Eigen::Index m, const T
 constexpr auto no_output = [](const SamplePlace&, int, Eigen::RowVectorXd&) {};
 constexpr auto no_state = [](const SamplePlace&, RowMatrix&) {};
 
+/// Where functions of the states are taken as errors of outputs: `ahead` of the sample before, f at the first.
+auto as_errors(const SamplePlace& at, const FilterEstimate& estimate, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) {
+  return at.sample == estimate.data[at.experiment].first ? f.row(at.of_all) : ahead.row(at.of_all - 1);
+}
+
 }  // namespace
 
+/// Adds what the mean of f and `ahead` at a place (of G_) does over the step from a sample.
+void ForceSensitivity::add_step(const SamplePlace& at, int place, const Eigen::RowVectorXd& mean, RowMatrix& s) const {
+  const std::size_t NF = places_, first = at.sample * static_cast<std::size_t>(s.rows());
+  for (Eigen::Index i = 0; i < s.rows(); ++i) {
+    const double gain = G_[at.experiment][(first + static_cast<std::size_t>(i)) * NF + place];
+    if (gain != 0.0) s.row(i) += gain * mean;
+  }
+}
+
 Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
-  Eigen::RowVectorXd mean(f.cols());
-  const std::size_t NF = ports_;
-  return response(estimate_, f.cols(), no_output, [&](const SamplePlace& at, RowMatrix& s) {
-    mean = 0.5 * (f.row(at.of_all) + ahead.row(at.of_all));
-    const std::size_t first = at.sample * static_cast<std::size_t>(s.rows());
-    for (Eigen::Index i = 0; i < s.rows(); ++i) {
-      const double gain = G_[at.experiment][(first + static_cast<std::size_t>(i)) * NF + port];
-      if (gain != 0.0) s.row(i) += gain * mean;
-    }
-  });
+  return response(estimate_, f.cols(), no_output,
+                  [&](const SamplePlace& at, RowMatrix& s) { add_step(at, port, 0.5 * (f.row(at.of_all) + ahead.row(at.of_all)), s); });
+}
+
+Eigen::MatrixXd ForceSensitivity::parameter_columns(int i, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
+  const std::size_t NP = parameters_.size();
+  return response(
+      estimate_, f.cols(),
+      [&](const SamplePlace& at, int o, Eigen::RowVectorXd& v) {
+        const std::vector<double>& slopes = Y_[at.experiment];
+        if (slopes.empty()) return;
+        const double slope = slopes[estimate_.traces[at.experiment].place(at.sample, o) * NP + i];
+        if (slope != 0.0) v += slope * as_errors(at, estimate_, f, ahead);
+      },
+      [&](const SamplePlace& at, RowMatrix& s) { add_step(at, ports_ + i, 0.5 * (f.row(at.of_all) + ahead.row(at.of_all)), s); });
 }
 
 Eigen::MatrixXd ForceSensitivity::output_columns(int output, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
   return response(
       estimate_, f.cols(),
       [&](const SamplePlace& at, int o, Eigen::RowVectorXd& v) {
-        if (o != output) return;
-        if (at.sample == estimate_.data[at.experiment].first) {
-          v += f.row(at.of_all);
-        } else {
-          v += ahead.row(at.of_all - 1);
-        }
+        if (o == output) v += as_errors(at, estimate_, f, ahead);
       },
       no_state);
+}
+
+Eigen::MatrixXd ForceSensitivity::columns_at(PortKind kind, int index, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
+  if (kind == PortKind::dynamic) return columns(index, f, ahead);
+  return kind == PortKind::quantity ? parameter_columns(index, f, ahead) : output_columns(index, f, ahead);
 }
 
 Eigen::MatrixXd ForceSensitivity::own_rate_columns(int own_state, const Eigen::MatrixXd& f) const {
@@ -324,7 +379,7 @@ Eigen::VectorXd ForceSensitivity::score_of_steps(int port) const {
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {
     const FilterTrace& trace = estimate_.traces[e];
     const FilterData& data = estimate_.data[e];
-    const std::size_t N = trace.n, NF = ports_;
+    const std::size_t N = trace.n, NF = places_;
     const RowMatrix adjoint = adjoint_of(trace, data, estimate_.noise);
     for (std::size_t k = data.first; k + 1 < trace.samples; ++k) {
       look_at_watch();

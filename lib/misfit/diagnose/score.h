@@ -41,11 +41,18 @@ class ScoreTest {
   bool has_parameters_ = false;
 };
 
-/// Columns for what is given as functions of the filtered states: forces on dynamic ports, errors of outputs, changes of the rates of
-/// effects' own states.
+/// Columns for what is given as functions of the filtered states: forces on dynamic ports, changes of parameters, errors of outputs,
+/// changes of the rates of effects' own states.
 class ForceSensitivity {
  public:
-  explicit ForceSensitivity(const FilterEstimate& estimate);
+  /// A sample of an experiment, and its place among those of all.
+  struct SamplePlace {
+    std::size_t experiment = 0, sample = 0;
+    Eigen::Index of_all = 0;
+  };
+
+  /// `parameters`: quantity ports of the system that columns are wanted for, too.
+  explicit ForceSensitivity(const FilterEstimate& estimate, std::vector<int> parameters = {});
 
   /// Quantities at the filtered state of each sample, all experiments one after the other (0 before the first used sample).
   [[nodiscard]] const RowMatrix& quantities() const { return quantities_; }
@@ -56,9 +63,16 @@ class ForceSensitivity {
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }
   /// Columns for forces on `port` that go over each step from f at its start to `ahead` at its end (all samples × m).
   [[nodiscard]] Eigen::MatrixXd columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const;
+  /// The quantity ports of parameters that there are columns for.
+  [[nodiscard]] const std::vector<int>& parameters() const { return parameters_; }
+  /// The same for changes of the parameter at place `i` of parameters(): over each step as a force, and, where an output's formula reads
+  /// it, at each sample as an error of that output (output_columns()).
+  [[nodiscard]] Eigen::MatrixXd parameter_columns(int i, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const;
   /// Columns for errors of an output, measured = predicted + error: at each sample `ahead` of the sample before, for an error must not
   /// depend on the very measurement that it is looked for in; f at the first (all samples × m).
   [[nodiscard]] Eigen::MatrixXd output_columns(int output, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const;
+  /// Of these three, that for a place of that kind: a dynamic port, a parameter at its place of parameters(), an output.
+  [[nodiscard]] Eigen::MatrixXd columns_at(PortKind kind, int index, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const;
   /// Columns for changes f of the rate of an effect's own state (counted from 0), constant over each step (all samples × m): to second
   /// order in the step, h (I + Phi)/2 of each.
   [[nodiscard]] Eigen::MatrixXd own_rate_columns(int own_state, const Eigen::MatrixXd& f) const;
@@ -68,9 +82,15 @@ class ForceSensitivity {
   [[nodiscard]] Eigen::VectorXd score_of_steps(int port) const;
 
  private:
+  void run_steps(Stepper& stepper, std::size_t experiment, std::size_t offset);
+  void note_outputs(Stepper& stepper, std::size_t experiment);
+  void add_step(const SamplePlace& at, int place, const Eigen::RowVectorXd& mean, RowMatrix& s) const;
+
   const FilterEstimate& estimate_;
-  std::vector<std::vector<double>> G_;  ///< per experiment: samples × n × ports
-  int ports_ = 0;
+  std::vector<int> parameters_;
+  std::vector<std::vector<double>> G_;  ///< per experiment: samples × n × (dynamic ports, then parameters)
+  std::vector<std::vector<double>> Y_;  ///< ∂(predicted output)/∂(parameter), per experiment: samples × outputs × parameters; empty: 0
+  int ports_ = 0, places_ = 0;          ///< dynamic ports; these and the parameters
   RowMatrix quantities_, ahead_, own_rates_;
   std::vector<double> times_;
   std::vector<bool> used_;

@@ -282,7 +282,7 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
   const auto unexplained = [&](const UnknownCurve& form, std::string quantities, double p) -> Unexplained {
     const SystemSpec& system = context.estimate.model.system->spec();
-    return {form.port, std::move(quantities), form.of_output, p, effects_of_unknown_form(form, unknown, system, context.registry)};
+    return {form.kind, form.port, std::move(quantities), p, effects_of_unknown_form(form, unknown, system, context.registry)};
   };
   const bool any = best != unknown.end();
   const bool front_better = any && !ranked.empty() && !ranked.front().degenerate && ranked.front().log_p < best->log_p;

@@ -206,18 +206,6 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-/// Ports of the free parameters of a small system, as times_other_states(); `factors` too: those that only multiply one state or input in
-/// one equation, so that their dependence on another is a product of two of them, bilinear.
-std::vector<std::string> ports_of_parameters(const SystemSpec& system, bool factors) {
-  std::vector<std::string> out;
-  if (!is_small(system)) return out;
-  for (const PortSpec& port : system.quantity_ports) {
-    const int parameter = index_of(system.constants, port.name);
-    if (parameter >= 0 && system.constants[parameter].free && (factors || port.conjugate.empty())) out.push_back(port.name);
-  }
-  return out;
-}
-
 /// Each parameter that may vary, once per state and input.
 std::vector<Roles> varying_parameters(const SystemSpec& system) {
   std::vector<std::string> values = names_of(system.states);
@@ -254,6 +242,16 @@ std::vector<Roles> with_inputs_in_outputs(std::vector<Roles> places, const Effec
 
 bool is_generic(const EffectSpec& effect) {
   return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& r) { return r.unit[0] == '*' || r.unit[0] == '{'; });
+}
+
+std::vector<std::string> ports_of_parameters(const SystemSpec& system, bool factors) {
+  std::vector<std::string> out;
+  if (!is_small(system)) return out;
+  for (const PortSpec& port : system.quantity_ports) {
+    const int parameter = index_of(system.constants, port.name);
+    if (parameter >= 0 && system.constants[parameter].free && (factors || port.conjugate.empty())) out.push_back(port.name);
+  }
+  return out;
 }
 
 std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system) {

@@ -31,4 +31,8 @@ using Roles = std::map<std::string, std::string>;
 /// at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
+/// Ports of the parameters of a small system that are free unless a study says otherwise; with `factors` too those that only multiply one
+/// state or input in one equation, so that their dependence on another is a product of two of them, bilinear.
+[[nodiscard]] std::vector<std::string> ports_of_parameters(const SystemSpec& system, bool factors);
+
 }  // namespace misfit

@@ -63,9 +63,11 @@ Candidate unknown_candidate(const UnknownCurve& curve, double families, double p
   c.score = c.predicted_drop = curve.result.chi2;
   c.dof = curve.result.dof;
   c.p_value = sidak(curve.p_value, families);
-  c.why = c.p_value < p_accept
-              ? (curve.of_output ? "an error that depends on " : "a force that depends on ") + curve.quantity + ", of unknown form"
-              : "not significant: family-wise " + p_equals(c.p_value);
+  c.why = c.p_value < p_accept ? (curve.kind == PortKind::sensor     ? "an error that depends on "
+                                  : curve.kind == PortKind::quantity ? "a change of " + curve.port + " with "
+                                                                     : "a force that depends on ") +
+                                     curve.quantity + ", of unknown form"
+                               : "not significant: family-wise " + p_equals(c.p_value);
   return c;
 }
 

@@ -47,7 +47,7 @@ class Search {
         options_(options),
         candidates_(list_candidates(fitted.estimate, fitted.request, fitted.registry, options.calibration)),
         score_(fitted.estimate),
-        force_(fitted.estimate) {}
+        force_(fitted.estimate, parameters_of_unknown_curves(fitted.estimate.model)) {}
 
   Discovery run() {
     std::optional<Unexplained> unexplained;
@@ -395,7 +395,8 @@ class Search {
     out_.force = random_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
-    for (const auto& curve : unknown_) curves += (curve.of_output ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
+    for (const auto& curve : unknown_)
+      curves += (curve.kind == PortKind::sensor ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     out_.not_tried = candidates_.not_tried;
     write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);

@@ -32,6 +32,7 @@ Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole)
     for (const BoundCoefficient& c : part.effects.back().coefficients) {
       if (c.parameter < 0 || start.parameters[c.parameter].unit != "s") continue;
       Parameter& time = start.parameters[c.parameter];
+      if (!time.free) continue;  // it says how sharp the effect is, not how late
       time.value = std::clamp(share * time.value, std::max(time.lower, 1e-3 * time.value), time.upper);
     }
   }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "misfit/core/lists.h"
+#include "misfit/discover/bindings.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/math/statistics.h"
 
@@ -23,9 +25,19 @@ std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
   return out;
 }
 
+std::vector<int> parameters_of_unknown_curves(const Model& model) {
+  const SystemSpec& system = model.system->spec();
+  const std::vector<int> free = model.free_parameters();
+  std::vector<int> out;
+  for (const std::string& name : ports_of_parameters(system, true)) {
+    if (place_of(free, index_of(model.parameters, name)) >= 0) out.push_back(index_of(system.quantity_ports, name));
+  }
+  return out;
+}
+
 std::string UnknownCurve::label() const {
   if (!memory.empty()) return memory;
-  if (of_output) return "an error of " + port + " that depends on " + quantity;
+  if (kind == PortKind::sensor) return "an error of " + port + " that depends on " + quantity;
   return other.empty() ? "an unknown curve " + port + "(" + quantity + ")"
                        : "an unknown surface " + port + "(" + quantity + ", " + other + ")";
 }
@@ -48,34 +60,72 @@ UnknownCurve unknown_form(const ScoreWork& work, const std::string& port, const 
   return out;
 }
 
-UnknownCurve unknown_force(const ScoreWork& work, int port, const Features& f) {
-  return unknown_form(work, work.estimate.model.system->spec().dynamic_ports[port].name, f, work.force.columns(port, f.f, f.ahead));
-}
+/// A place where curves of unknown form are looked for.
+struct UnknownPlace {
+  PortKind kind;
+  int index;  ///< of the dynamic port, the parameter of ScoreWork::force, the output
+};
 
-UnknownCurve unknown_error(const ScoreWork& work, int output, const Features& f) {
-  UnknownCurve out =
-      unknown_form(work, work.estimate.model.system->spec().outputs[output].name, f, work.force.output_columns(output, f.f, f.ahead));
-  out.of_output = true;
+std::vector<UnknownPlace> places_of_unknown_curves(const ScoreWork& work) {
+  const SystemSpec& system = work.estimate.model.system->spec();
+  std::vector<UnknownPlace> out;
+  for (const int port : ports_of_unknown_curves(system)) out.push_back({PortKind::dynamic, port});
+  for (int i = 0; i < int_size(work.force.parameters()); ++i) out.push_back({PortKind::quantity, i});
+  if (work.calibrated) return out;
+  for (int o = 0; o < int_size(system.outputs); ++o) out.push_back({PortKind::sensor, o});
   return out;
 }
 
-/// Outputs whose errors of unknown form are looked for.
-std::size_t count_of_outputs(const ScoreWork& work) { return work.calibrated ? 0 : work.estimate.model.system->spec().outputs.size(); }
+const std::string& name_of(const UnknownPlace& place, const ScoreWork& work) {
+  const SystemSpec& system = work.estimate.model.system->spec();
+  if (place.kind == PortKind::dynamic) return system.dynamic_ports[place.index].name;
+  return place.kind == PortKind::sensor ? system.outputs[place.index].name
+                                        : system.quantity_ports[work.force.parameters()[place.index]].name;
+}
+
+UnknownCurve unknown_curve_at(const ScoreWork& work, const UnknownPlace& place, const Features& f) {
+  UnknownCurve out = unknown_form(work, name_of(place, work), f, work.force.columns_at(place.kind, place.index, f.f, f.ahead));
+  out.kind = place.kind;
+  out.index = place.index;
+  return out;
+}
 
 /// Of the own state of an effect to which the features belong.
 UnknownCurve unknown_own_rate(const ScoreWork& work, const BoundEffect& effect, const Features& f) {
   const Model& model = work.estimate.model;
   const std::vector<std::string> ports = names_of_ports(model.system->spec(), effect);
   UnknownCurve out = unknown_form(work, ports.empty() ? effect.name : ports.front(), f, work.force.own_rate_columns(f.index, f.f));
-  out.of_output = effect.kind == PortKind::sensor;
+  out.kind = effect.kind;
   out.memory = "another dependence of d(" + model.own_state_names[f.index] + ")/dt on " + f.quantity;
   out.quantity = past_read_by(model.system->spec(), effect);
   return out;
 }
 
-std::vector<Features> features_of_unknown_curves(const ScoreWork& work) {
-  std::vector<Features> out = features_of(work.estimate, work.force, hats_of_unknown_curves);
-  for (Features& past : features_of_pasts(work.estimate, work.force, hats_of_unknown_curves)) out.push_back(std::move(past));
+/// A family of functions of a quantity, to be tested at a place.
+struct UnknownTest {
+  const Features* features;
+  UnknownPlace place;
+};
+
+/// What they are functions of, and where each is tested: a parameter for what it depends on now, all others for pasts, too.
+struct UnknownTests {
+  std::vector<Features> features, pasts;
+  std::vector<UnknownTest> tests;
+};
+
+UnknownTests tests_of_unknown_curves(const ScoreWork& work) {
+  UnknownTests out{.features = features_of(work.estimate, work.force, hats_of_unknown_curves),
+                   .pasts = features_of_pasts(work.estimate, work.force, hats_of_unknown_curves),
+                   .tests = {}};
+  const std::vector<UnknownPlace> places = places_of_unknown_curves(work);
+  for (const Features& f : out.features) {
+    for (const UnknownPlace& place : places) out.tests.push_back({&f, place});
+  }
+  for (const Features& f : out.pasts) {
+    for (const UnknownPlace& place : places) {
+      if (place.kind != PortKind::quantity) out.tests.push_back({&f, place});
+    }
+  }
   return out;
 }
 
@@ -85,7 +135,7 @@ std::vector<UnknownCurve> best_of_each(const std::vector<UnknownCurve>& all) {
   std::vector<double> count;
   for (const UnknownCurve& curve : all) {
     const auto same = std::find_if(out.begin(), out.end(), [&](const UnknownCurve& c) {
-      return c.of_output == curve.of_output && c.port == curve.port && c.quantity == curve.quantity;
+      return c.kind == curve.kind && c.port == curve.port && c.quantity == curve.quantity;
     });
     if (same == out.end()) {
       out.push_back(curve);
@@ -111,24 +161,17 @@ std::string past_read_by(const SystemSpec& system, const BoundEffect& effect) {
 }
 
 std::size_t count_of_unknown_curves(const ScoreWork& work) {
-  std::set<std::string> quantities;
-  for (const Features& f : features_of_unknown_curves(work)) quantities.insert(f.quantity);
-  return quantities.size() * (ports_of_unknown_curves(work.estimate.model.system->spec()).size() + count_of_outputs(work));
+  std::set<std::tuple<std::string, PortKind, int>> known;
+  const UnknownTests tests = tests_of_unknown_curves(work);
+  for (const auto& [features, place] : tests.tests) known.emplace(features->quantity, place.kind, place.index);
+  return known.size();
 }
 
 std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
-  const std::vector<Features> features = features_of_unknown_curves(work);
-  const std::vector<int> ports = ports_of_unknown_curves(work.estimate.model.system->spec());
-  const std::size_t places = ports.size() + count_of_outputs(work);
-  std::vector<UnknownCurve> all(features.size() * places);
+  const UnknownTests tests = tests_of_unknown_curves(work);
+  std::vector<UnknownCurve> all(tests.tests.size());
   run_jobs(
-      all.size(), work.threads,
-      [&](std::size_t k) {
-        const Features& f = features[k / places];
-        const std::size_t place = k % places;
-        all[k] =
-            place < ports.size() ? unknown_force(work, ports[place], f) : unknown_error(work, static_cast<int>(place - ports.size()), f);
-      },
+      all.size(), work.threads, [&](std::size_t k) { all[k] = unknown_curve_at(work, tests.tests[k].place, *tests.tests[k].features); },
       progress);
   return best_of_each(all);
 }
@@ -159,7 +202,7 @@ std::vector<UnknownCurve> unknown_surfaces(const ScoreWork& work, const std::vec
   std::vector<UnknownCurve> out(pairs.size() * ports.size());
   run_jobs(out.size(), work.threads, [&](std::size_t k) {
     const auto [a, b] = pairs[k / ports.size()];
-    out[k] = unknown_force(work, ports[k % ports.size()], products_of(features[a], features[b]));
+    out[k] = unknown_curve_at(work, {PortKind::dynamic, ports[k % ports.size()]}, products_of(features[a], features[b]));
     out[k].other = features[b].quantity;
   });
   return out;

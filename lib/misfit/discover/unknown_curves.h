@@ -1,6 +1,6 @@
 #pragma once
 
-// Score tests of forces and errors of unknown form: what no effect of the registry needs to describe.
+// Score tests of forces, errors and changes of parameters of unknown form: what no effect of the registry needs to describe.
 
 #include <string>
 #include <vector>
@@ -16,10 +16,14 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// something else; what seems to is the sensor's).
 [[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);
 
-/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another; or so an
-/// error of an output.
+/// Quantity ports of the parameters that may change in a way of unknown form: the free ones of a small system.
+[[nodiscard]] std::vector<int> parameters_of_unknown_curves(const Model& model);
+
+/// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another; or so a
+/// change of a parameter, or an error of an output.
 struct UnknownCurve {
-  bool of_output = false;  ///< `port` is an output
+  PortKind kind = PortKind::dynamic;  ///< quantity: `port` is a parameter; sensor: it is an output
+  int index = -1;                     ///< of the place among those of its kind (ForceSensitivity::columns_at())
   std::string port, quantity;
   int quantity_index = -1;
   std::string other;   ///< second quantity of a surface; empty: a curve
@@ -32,7 +36,8 @@ struct UnknownCurve {
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
 };
 
-/// Of every quantity, and of the past of every input, on every dynamic port, and as errors of every output.
+/// Of every quantity, and of the past of every input, on every dynamic port, and as errors of every output; of every quantity as changes
+/// of the parameters of `work.force`.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
 [[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
 

@@ -21,7 +21,11 @@ const char* role_of_curve(const EffectSpec& spec) {
   return "";
 }
 
-bool of_outputs(const EffectSpec& spec) { return std::string_view(spec.ports.front().name) == "output"; }
+/// Of the place that such an effect acts on.
+PortKind kind_of(const EffectSpec& spec) {
+  const std::string_view role = spec.ports.front().name;
+  return role == "output" ? PortKind::sensor : role == "parameter" ? PortKind::quantity : PortKind::dynamic;
+}
 
 std::map<std::string, std::string> roles_at(const EffectSpec& spec, const std::string& place, const std::string& quantity) {
   return {{spec.ports.front().name, place}, {role_of_curve(spec), quantity}};
@@ -110,7 +114,7 @@ std::vector<EffectPlace> effects_of_unknown_form(const UnknownCurve& unexplained
   if (!unexplained.memory.empty()) return {};
   std::vector<const UnknownCurve*> curves;
   for (const UnknownCurve& curve : screened) {
-    const bool same_place = curve.of_output == unexplained.of_output && curve.port == unexplained.port;
+    const bool same_place = curve.kind == unexplained.kind && curve.port == unexplained.port;
     const bool same_quantity = curve.quantity == unexplained.quantity || curve.quantity == unexplained.other;
     if (same_place && same_quantity && can_be_read(curve, system)) curves.push_back(&curve);
   }
@@ -119,7 +123,7 @@ std::vector<EffectPlace> effects_of_unknown_form(const UnknownCurve& unexplained
   for (const UnknownCurve* curve : curves) {
     for (const std::string& key : registry.effect_keys()) {
       const EffectSpec& spec = registry.effect(key).spec();
-      if (!spec.has_unknown_form() || of_outputs(spec) != curve->of_output) continue;
+      if (!spec.has_unknown_form() || kind_of(spec) != curve->kind) continue;
       out.push_back({key, roles_at(spec, curve->port, curve->quantity)});
     }
   }
@@ -131,7 +135,7 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
   const SystemSpec& system = work.estimate.model.system->spec();
   const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
   std::vector<UnknownCurve> curves = unknown_curves(work);
-  std::erase_if(curves, [&](const UnknownCurve& curve) { return curve.of_output != of_outputs(spec) || !can_be_read(curve, system); });
+  std::erase_if(curves, [&](const UnknownCurve& curve) { return curve.kind != kind_of(spec) || !can_be_read(curve, system); });
   std::stable_sort(curves.begin(), curves.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
   std::vector<Candidate> out;
   for (const UnknownCurve& curve : curves) {
@@ -139,8 +143,7 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
     if (hats == features.end()) continue;
     const Eigen::MatrixXd f = with_powers(hats->f, work.force.quantities().col(curve.quantity_index));
     const Eigen::MatrixXd ahead = with_powers(hats->ahead, work.force.quantities_ahead().col(curve.quantity_index));
-    const Eigen::MatrixXd columns = curve.of_output ? work.force.output_columns(index_of(system.outputs, curve.port), f, ahead)
-                                                    : work.force.columns(index_of(system.dynamic_ports, curve.port), f, ahead);
+    const Eigen::MatrixXd columns = work.force.columns_at(curve.kind, curve.index, f, ahead);
     Candidate c;
     c.effect = spec.key;
     c.roles = roles_at(spec, curve.port, curve.quantity);

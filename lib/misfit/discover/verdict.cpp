@@ -113,7 +113,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   if (unexplained) {
     out.unexplained_port = unexplained->port;
     out.unexplained_quantity = unexplained->quantity;
-    out.unexplained_error = unexplained->of_output;
+    out.unexplained_error = unexplained->kind == PortKind::sensor;
+    out.unexplained_parameter = unexplained->kind == PortKind::quantity;
     out.unexplained_effects = unexplained->effects;
     out.outcome = SearchOutcome::unknown_form;
     out.verdict = "Something is missing that depends on " + unexplained->quantity + " (" + unexplained_place(out) + ", " +

@@ -7,10 +7,10 @@
 
 namespace misfit {
 
-/// A dependence that no known effect describes: of a force on a port, or of the error of an output.
+/// A dependence that no known effect describes: of a force on a port, of a parameter, or of the error of an output.
 struct Unexplained {
+  PortKind kind = PortKind::dynamic;
   std::string port, quantity;
-  bool of_output = false;
   double p_value = 1.0;
   std::vector<EffectPlace> effects = {};  ///< that add it to the model as a curve
 };

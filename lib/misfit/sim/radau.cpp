@@ -58,8 +58,10 @@ bool RadauStep::factorise() {
     if (!(std::abs(pivot[k]) > 0.0) || !std::isfinite(pivot[k])) return false;
     for (std::size_t r = k + 1; r < N_; ++r) {
       double* row = lu_.data() + row_[r] * N_;
-      row[k] /= pivot[k];
-      for (std::size_t c = k + 1; c < N_; ++c) row[c] -= row[k] * pivot[c];
+      if (row[k] == 0.0) continue;
+      const double factor = row[k] / pivot[k];
+      row[k] = factor;
+      for (std::size_t c = k + 1; c < N_; ++c) row[c] -= factor * pivot[c];
     }
   }
   return true;
@@ -69,6 +71,7 @@ bool RadauStep::factorise() {
 void RadauStep::solve(int width, int row_length, double* rows) const {
   const auto at = [&](std::size_t k) { return rows + row_[k] * row_length; };
   const auto subtract = [&](double factor, const double* from, double* to) {
+    if (factor == 0.0) return;
     for (int c = 0; c < width; ++c) to[c] -= factor * from[c];
   };
   for (std::size_t k = 0; k < N_; ++k) {
