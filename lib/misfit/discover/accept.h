@@ -21,6 +21,8 @@ struct RankedCandidate {
   /// nothing of the effect then.
   bool degenerate = false;
   bool alone_gains_nothing = false;  ///< refused for its held-out gain, and for nothing else
+  /// Drop of the refit beside which no second effect was found to hold: not looked for again until there is another refit.
+  std::optional<double> no_second_at;
 };
 
 /// What a search works on, for testing again in another model.

@@ -108,10 +108,8 @@ BestPairs best_pairs(const RankedCandidate& single, const std::vector<RankedCand
   return out;
 }
 
-}  // namespace
-
-std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked, HeldOut& held_out,
-                                      const SearchContext& context) {
+std::optional<Pair> second_beside(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked, HeldOut& held_out,
+                                  const SearchContext& context) {
   const DiscoverOptions& options = context.options;
   const ConditionalScores conditional(*in.refit, context);
   const SecondEffect second = second_effect_given(in, conditional, ranked, options.p_accept);
@@ -131,6 +129,16 @@ std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vect
   if (remaining_lack_of_fit(both.estimate, *second.score.candidate_model, {in.refit->drop, least_share_of_all, 2}, options))
     return std::nullopt;
   return out;
+}
+
+}  // namespace
+
+std::optional<Pair> explaining_effect(RankedCandidate& in, const std::vector<RankedCandidate>& ranked, HeldOut& held_out,
+                                      const SearchContext& context) {
+  if (in.no_second_at == in.refit->drop) return std::nullopt;
+  std::optional<Pair> found = second_beside(in, ranked, held_out, context);
+  if (!found) in.no_second_at = in.refit->drop;
+  return found;
 }
 
 std::optional<PairInstead> better_pair(std::vector<RankedCandidate>& ranked, RankedCandidate& single, HeldOut& held_out,

@@ -19,9 +19,9 @@ struct Pair {
 };
 
 /// Step 6 of accept_best(), for one candidate: another known effect beside which `in` holds. Of an imitation: it removes the lack of fit
-/// that `in` leaves; of one that gains nothing by itself on what is held out: both together do, too.
-[[nodiscard]] std::optional<Pair> explaining_effect(const RankedCandidate& in, const std::vector<RankedCandidate>& ranked,
-                                                    HeldOut& held_out, const SearchContext& context);
+/// that `in` leaves; of one that gains nothing by itself on what is held out: both together do, too. That there is none is noted in `in`.
+[[nodiscard]] std::optional<Pair> explaining_effect(RankedCandidate& in, const std::vector<RankedCandidate>& ranked, HeldOut& held_out,
+                                                    const SearchContext& context);
 
 /// Two effects in the place of one.
 struct PairInstead {
