@@ -4,18 +4,20 @@ namespace {
 
 using namespace misfit;
 
-/// A force at one frequency, of any phase: a line in the spectrum of the missing force.
+/// A force at one frequency, of any phase: a line in the spectrum of the missing force. Or a parameter that goes up and down: a growth rate
+/// by day and night, the stiffness of a pair of gears as their teeth come into contact.
 struct PeriodicForcing {
   static constexpr const char* formula = "F = cosine cos(2 pi n) + sine sin(2 pi n), n = f t + f' t^2/2";
   static constexpr const char* symbols =
-      "cosine, sine amplitudes [port], f frequency at t = 0 [Hz], f' its drift [Hz/s], n periods since t = 0, t time of the recording [s]";
+      "cosine, sine amplitudes [port], a force or a parameter, f frequency at t = 0 [Hz], f' its drift [Hz/s], n periods since t = 0, t "
+      "time of the recording [s]";
   static constexpr const char* valid = "a frequency that stays, or drifts evenly, to within 1/(2T) over a recording of length T";
   static constexpr const char* size = "amplitude sqrt(cosine^2 + sine^2); a vortex street behind the strut: some N m";
   static constexpr const char* source = "Fourier; amplitudes instead of amplitude and phase keep off at a regular point";
   static constexpr const char* excludes = "uneven drift of the frequency, bandwidth, harmonics";
 
   enum Port { port };
-  static constexpr Role ports[] = {{.name = "port", .unit = "*"}};
+  static constexpr Role ports[] = {{.name = "port", .unit = "*", .parameter_too = true}};
   enum Coefficient { cosine, sine, frequency, frequency_drift };
   static constexpr CoefficientSpec coefficients[] = {
       {.name = "cosine", .unit = "{port}", .lower = -1e15, .upper = 1e15, .scale = 1.0, .doc = "amplitude in phase with cos(2 pi f t)"},

@@ -124,7 +124,7 @@ TEST(ForceSensitivity, OfAConstantIsTheColumnOfAConstantForce) {
   const double weight = 2.0 * 9.80665;
   EXPECT_LT((weight * columns - jacobian.J).norm(), 1e-8 * jacobian.J.norm());
   // The score of single steps adds up to that of the constant force.
-  EXPECT_NEAR(force.score_of_steps(0).sum(), -columns.col(0).dot(jacobian.r), 1e-6 * columns.norm() * jacobian.r.norm());
+  EXPECT_NEAR(force.score_of_steps(PortKind::dynamic, 0).sum(), -columns.col(0).dot(jacobian.r), 1e-6 * columns.norm() * jacobian.r.norm());
 }
 
 /// Of a parameter that stands in an equation and in an output: a change of one unit over every step and at every sample is the parameter's

@@ -25,8 +25,12 @@ UnknownCurve curve(const std::string& port, const std::string& quantity, double 
 
 /// "unknown_force of x1 on dx2/dt"
 std::vector<std::string> effects(const UnknownCurve& unexplained) {
-  const std::vector<UnknownCurve> screened = {curve("dx1/dt", "x1", -90.0), curve("dx2/dt", "x1", -20.0),  curve("dx2/dt", "x2", -50.0),
-                                              curve("dx2/dt", "t", -70.0),  curve("y", "x1", -60.0, PortKind::sensor), curve("y", "x2", -10.0, PortKind::sensor)};
+  const std::vector<UnknownCurve> screened = {curve("dx1/dt", "x1", -90.0),
+                                              curve("dx2/dt", "x1", -20.0),
+                                              curve("dx2/dt", "x2", -50.0),
+                                              curve("dx2/dt", "t", -70.0),
+                                              curve("y", "x1", -60.0, PortKind::sensor),
+                                              curve("y", "x2", -10.0, PortKind::sensor)};
   std::vector<std::string> out;
   for (const EffectPlace& place :
        effects_of_unknown_form(unexplained, screened, registry().system("test_tanks").make({})->spec(), registry()))

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 
 #include "misfit/discover/discover.h"
@@ -38,11 +39,15 @@ wall = { unit = "K", noise = 0.3 }
 fluid = { unit = "K", noise = 0.2 }
 )toml";
 
-/// With its peak of 25 W/K where the wall is at 80 K, or as it is far from there.
-double transfer(bool varies, double wall) { return 12.0 + (varies ? 13.0 * std::exp(-std::pow((wall - 80.0) / 15.0, 2)) : 0.0); }
+/// [W/K] of the temperature of the wall and the time.
+using Transfer = double (*)(double, double);
+double constant(double /*wall*/, double /*t*/) { return 12.0; }
+double with_a_peak(double wall, double /*t*/) { return 12.0 + 13.0 * std::exp(-std::pow((wall - 80.0) / 15.0, 2)); }
+/// A stirrer that runs faster and slower, once in 90 s.
+double stirred(double /*wall*/, double t) { return 12.0 + 3.0 * std::sin(2.0 * std::numbers::pi * t / 90.0); }
 
 /// By Euler steps of 20 ms, which share nothing with sim/; sampled every 2 s.
-Signals heated(bool varies, unsigned seed) {
+Signals heated(Transfer transfer, unsigned seed) {
   constexpr double step = 2.0, fine = 0.02;
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -59,7 +64,7 @@ Signals heated(bool varies, unsigned seed) {
     s.measured[0].values.push_back(wall + 0.3 * normal(random));
     s.measured[1].values.push_back(fluid + 0.2 * normal(random));
     for (int i = 0; i < 100; ++i) {
-      const double over = transfer(varies, wall) * (wall - fluid);
+      const double over = transfer(wall, step * n + fine * i) * (wall - fluid);
       wall += fine * (power - over) / 200.0;
       fluid += fine * (over - 20.0 * fluid) / 400.0;
     }
@@ -86,7 +91,7 @@ struct Found {
 };
 
 TEST(AParameterWithAPeak, IsAChangeOfUnknownFormOfThatParameterWithWhatItDependsOn) {
-  const Discovery d = Found(heated(true, 5)).discover_missing();
+  const Discovery d = Found(heated(with_a_peak, 5)).discover_missing();
   ASSERT_EQ(d.outcome, SearchOutcome::unknown_form) << d.verdict;
   EXPECT_TRUE(d.unexplained_parameter) << d.verdict;
   EXPECT_FALSE(d.unexplained_error);
@@ -103,7 +108,7 @@ TEST(AParameterWithAPeak, IsAChangeOfUnknownFormOfThatParameterWithWhatItDepends
 TEST(AParameterWithAPeak, IsFixedWhereItsCurveIsAdded) {
   DiscoverOptions options;
   options.only = "unknown_variation";
-  const Discovery d = Found(heated(true, 5)).discover_missing(options);
+  const Discovery d = Found(heated(with_a_peak, 5)).discover_missing(options);
   ASSERT_FALSE(d.candidates.empty());
   const Candidate& first = d.candidates.front();
   EXPECT_EQ(first.roles, (std::map<std::string, std::string>{{"parameter", "G"}, {"with", "wall"}}));
@@ -111,10 +116,23 @@ TEST(AParameterWithAPeak, IsFixedWhereItsCurveIsAdded) {
 }
 
 TEST(AParameterWithAPeak, IsNotFoundWhereItIsConstant) {
-  const Discovery d = Found(heated(false, 6)).discover_missing();
+  const Discovery d = Found(heated(constant, 6)).discover_missing();
   EXPECT_EQ(d.outcome, SearchOutcome::none_missing) << d.verdict;
   EXPECT_TRUE(std::any_of(d.candidates.begin(), d.candidates.end(), [](const Candidate& c) { return c.effect == "unknown:G(wall)"; }))
       << "it was tested";
+}
+
+TEST(AParameterThatGoesUpAndDown, IsNamedWithItsFrequencyAndSize) {
+  const Discovery d = Found(heated(stirred, 7)).discover_missing();
+  ASSERT_FALSE(d.candidates.empty());
+  const Candidate& first = d.candidates.front();
+  EXPECT_EQ(effect_at(first.effect, first.roles), "periodic_forcing (port = G)") << d.verdict;
+  EXPECT_TRUE(first.accepted) << first.why;
+  const Estimate frequency = first.parameters.at("frequency"), sine = first.parameters.at("sine");
+  EXPECT_NEAR(frequency.value, 1.0 / 90.0, 4.0 * frequency.sigma);
+  EXPECT_LT(frequency.sigma, 1e-4);
+  EXPECT_NEAR(sine.value, 3.0, 4.0 * sine.sigma);
+  EXPECT_LT(sine.sigma, 0.5);
 }
 
 TEST(ParametersOfUnknownCurves, AreThoseThatAreFreeInTheModel) {

@@ -373,7 +373,8 @@ Eigen::MatrixXd ForceSensitivity::own_rate_columns(int own_state, const Eigen::M
   });
 }
 
-Eigen::VectorXd ForceSensitivity::score_of_steps(int port) const {
+Eigen::VectorXd ForceSensitivity::score_of_steps(PortKind kind, int index) const {
+  const int place = kind == PortKind::quantity ? ports_ + index : index;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(times_.size());
   std::size_t offset = 0;
   for (std::size_t e = 0; e < estimate_.traces.size(); ++e) {
@@ -384,7 +385,7 @@ Eigen::VectorXd ForceSensitivity::score_of_steps(int port) const {
     for (std::size_t k = data.first; k + 1 < trace.samples; ++k) {
       look_at_watch();
       double sum = 0.0;
-      for (std::size_t i = 0; i < N; ++i) sum += G_[e][(k * N + i) * NF + port] * adjoint(k + 1, i);
+      for (std::size_t i = 0; i < N; ++i) sum += G_[e][(k * N + i) * NF + place] * adjoint(k + 1, i);
       out[offset + k] = sum;
     }
     offset += trace.samples;

@@ -78,8 +78,9 @@ class ForceSensitivity {
   [[nodiscard]] Eigen::MatrixXd own_rate_columns(int own_state, const Eigen::MatrixXd& f) const;
   /// Rates of the effects' own states, the mean of the step that follows each sample, all experiments one after the other.
   [[nodiscard]] const RowMatrix& own_rates() const { return own_rates_; }
-  /// ∂ log-likelihood/∂(force on `port` over the step from each sample), gains fixed: scans of many functions need only this (all samples).
-  [[nodiscard]] Eigen::VectorXd score_of_steps(int port) const;
+  /// ∂ log-likelihood/∂(force on a dynamic port, or a parameter at its place of parameters(), over the step from each sample), gains fixed:
+  /// scans of many functions need only this (all samples). What a parameter does in the formulas of outputs is not in it.
+  [[nodiscard]] Eigen::VectorXd score_of_steps(PortKind kind, int index) const;
 
  private:
   void run_steps(Stepper& stepper, std::size_t experiment, std::size_t offset);

@@ -47,7 +47,7 @@ class Search {
         options_(options),
         candidates_(list_candidates(fitted.estimate, fitted.request, fitted.registry, options.calibration)),
         score_(fitted.estimate),
-        force_(fitted.estimate, parameters_of_unknown_curves(fitted.estimate.model)) {}
+        force_(sensitivity_of_forces_and_parameters(fitted.estimate)) {}
 
   Discovery run() {
     std::optional<Unexplained> unexplained;
@@ -208,7 +208,7 @@ class Search {
     calm_ = free_run(estimate_, {experiments_, options_.threads});
     if (!calm_) return;
     calm_score_.emplace(*calm_);
-    const ForceSensitivity force(*calm_);
+    const ForceSensitivity force = sensitivity_of_forces_and_parameters(*calm_);
     calm_screening_ = screen({*calm_, *calm_score_, force, options_.threads}, candidates_.models);
     nominated_ = forces_shown_by(*calm_, calm_screening_);
     const auto known = std::find_if(nominated_.begin(), nominated_.end(), [this](const ScreeningResult* s) {

@@ -72,7 +72,7 @@ std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double t
 std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model, const Added& added,
                                                   const DiscoverOptions& options) {
   const ScoreTest score(with);
-  const ForceSensitivity force(with, parameters_of_unknown_curves(with.model));
+  const ForceSensitivity force = sensitivity_of_forces_and_parameters(with);
   const ScoreWork work{
       .estimate = with, .score = score, .force = force, .threads = options.threads, .calibrated = options.calibration != nullptr};
   const std::vector<int> read = quantities_that_tell(candidate_model, added.effects);

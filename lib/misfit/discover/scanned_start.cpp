@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "misfit/discover/refit.h"
+#include "misfit/discover/unknown_curves.h"
 
 namespace misfit {
 namespace {
@@ -43,7 +44,7 @@ std::optional<ScannedStart> scanned_start(const ScanTask& task, const EffectRequ
   if (!model) return std::nullopt;
   fix_shapes(fixed, *model);
   const ScoreTest score(task.without.estimate);
-  const ForceSensitivity force(task.without.estimate);
+  const ForceSensitivity force = sensitivity_of_forces_and_parameters(task.without.estimate);
   const std::vector<CandidateModel> alone = {std::move(*model)};
   const std::vector<ScreeningResult> screened = screen({.estimate = task.without.estimate,
                                                         .score = score,

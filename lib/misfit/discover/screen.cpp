@@ -93,6 +93,16 @@ void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, Screeni
   }
 }
 
+/// Of the ports that an effect acts on: dynamic ones, or parameters.
+std::vector<Eigen::VectorXd> scores_of_steps(const BoundEffect& effect, const ForceSensitivity& force) {
+  std::vector<Eigen::VectorXd> out;
+  for (const int port : effect.ports) {
+    const int index = effect.kind == PortKind::quantity ? place_of(force.parameters(), port) : port;
+    if (index >= 0 && effect.kind != PortKind::sensor) out.push_back(force.score_of_steps(effect.kind, index));
+  }
+  return out;
+}
+
 /// Frequencies whose line in the score of the force steps stands out most.
 std::vector<double> frequency_peaks(const FilterEstimate& estimate, const CandidateModel& candidate_model, const ForceSensitivity& force,
                                     FrequencyGrid& grid) {
@@ -101,9 +111,10 @@ std::vector<double> frequency_peaks(const FilterEstimate& estimate, const Candid
     const auto first = force.times().begin() + from;
     times.emplace_back(first, first + estimate.traces[e].samples);
   }
-  grid = frequency_grid(times, candidate_model.frequency_from, candidate_model.frequency_to, candidate_model.ports.size());
+  const std::vector<Eigen::VectorXd> scores = scores_of_steps(candidate_model.model.effects.back(), force);
+  grid = frequency_grid(times, candidate_model.frequency_from, candidate_model.frequency_to, scores.size());
   std::vector<double> power(grid.count, 0.0);
-  for (int port : candidate_model.ports) add_over_background(periodogram(force.score_of_steps(port), times, grid), power);
+  for (const Eigen::VectorXd& score : scores) add_over_background(periodogram(score, times, grid), power);
   constexpr std::size_t most = 8;
   std::vector<double> out;
   for (const std::size_t f : strongest_lines(power, most)) out.push_back(grid.at(f));

@@ -25,6 +25,13 @@ std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
   return out;
 }
 
+ForceSensitivity sensitivity_of_forces_and_parameters(const FilterEstimate& estimate) {
+  const SystemSpec& system = estimate.model.system->spec();
+  std::vector<int> parameters;
+  for (const std::string& name : ports_of_parameters(system, true)) parameters.push_back(index_of(system.quantity_ports, name));
+  return ForceSensitivity(estimate, std::move(parameters));
+}
+
 std::vector<int> parameters_of_unknown_curves(const Model& model) {
   const SystemSpec& system = model.system->spec();
   const std::vector<int> free = model.free_parameters();
@@ -70,7 +77,9 @@ std::vector<UnknownPlace> places_of_unknown_curves(const ScoreWork& work) {
   const SystemSpec& system = work.estimate.model.system->spec();
   std::vector<UnknownPlace> out;
   for (const int port : ports_of_unknown_curves(system)) out.push_back({PortKind::dynamic, port});
-  for (int i = 0; i < int_size(work.force.parameters()); ++i) out.push_back({PortKind::quantity, i});
+  for (const int port : parameters_of_unknown_curves(work.estimate.model)) {
+    if (const int i = place_of(work.force.parameters(), port); i >= 0) out.push_back({PortKind::quantity, i});
+  }
   if (work.calibrated) return out;
   for (int o = 0; o < int_size(system.outputs); ++o) out.push_back({PortKind::sensor, o});
   return out;

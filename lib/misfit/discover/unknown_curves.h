@@ -16,7 +16,10 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// something else; what seems to is the sensor's).
 [[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);
 
-/// Quantity ports of the parameters that may change in a way of unknown form: the free ones of a small system.
+/// Columns of forces, errors, and of the parameters of a small system.
+[[nodiscard]] ForceSensitivity sensitivity_of_forces_and_parameters(const FilterEstimate& estimate);
+
+/// Quantity ports of the parameters that may change in a way of unknown form: of a small system those that are free in the model.
 [[nodiscard]] std::vector<int> parameters_of_unknown_curves(const Model& model);
 
 /// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another; or so a
@@ -37,7 +40,7 @@ struct UnknownCurve {
 };
 
 /// Of every quantity, and of the past of every input, on every dynamic port, and as errors of every output; of every quantity as changes
-/// of the parameters of `work.force`.
+/// of the parameters (parameters_of_unknown_curves()) of which `work.force` has columns.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
 [[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
 

@@ -106,7 +106,8 @@ void thermal_house(const double* x, const double* u, const Values& p, double* dx
 
 void heat_exchanger(const double* x, const double* u, const Values& p, double* dx, double* y) {
   const double shed = 1 + p("shedding") * std::sin(p("t") / 37);
-  const double h = p("h") * (1 - p("fouling") * p("t") / 1000) * (1 + p("turbulence") * (u[0] - 0.2)) * shed;
+  const double film = 1 + p("film") * std::exp(-std::pow((x[0] - 30) / 4, 2));
+  const double h = p("h") * (1 - p("fouling") * p("t") / 1000) * (1 + p("turbulence") * (u[0] - 0.2)) * shed * film;
   dx[0] = (u[0] * (u[1] - x[0]) - h * (x[0] - x[1]) - p("shell") * (x[0] - x[2]) - p("loss")) / p("Mh");
   dx[1] = (h * (x[0] - x[1]) - p("mc") * x[1] - p("cold_loss") * x[1]) / p("Mc");
   dx[2] = p("shell") > 0.0 ? (x[0] - x[2]) / p("shell_tau") : 0.0;
@@ -132,7 +133,8 @@ void ship_yaw(const double* x, const double* u, const Values& p, double* dx, dou
 void chemostat(const double* x, const double* u, const Values& p, double* dx, double* y) {
   const double X = std::max(x[0], 0.0), S = std::max(x[1], 0.0);
   const double poisoned = 1 + p("poisoned") * std::sin(p("t") / 9000);
-  const double mu = p("mu_max") * S / (p("Ks") + S) * (1 - p("crowding") * X) * poisoned;
+  const double clumps = 1 - p("clumps") * std::exp(-std::pow((X - 4) / 0.5, 2));
+  const double mu = p("mu_max") * S / (p("Ks") + S) * (1 - p("crowding") * X) * poisoned * clumps;
   dx[0] = (mu - u[0]) * X - p("death") * X;
   dx[1] = u[0] * (p("Sin") - S) - mu * X / p("Y") + p("spill");
   y[0] = x[0];
