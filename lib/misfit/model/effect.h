@@ -53,7 +53,7 @@ struct Role {
   const char* completes = "";
   /// Of `displacement` and `other`: it may also stand for an input of the same unit: play after an actuator, heat to measured surroundings.
   bool input_too = false;
-  /// Of `port`: what acts on it may also act on a parameter that is a port (a drift, a periodic change; what reads states and inputs is varying_parameter).
+  /// Of `port`: what acts on it may also act on a parameter that is a port (a drift, a period; of states and inputs: varying_parameter).
   bool parameter_too = false;
   /// The coefficient that is the delay with which it is read (Reads::late()): it must then stand for an input of the system.
   const char* late_by = "";
