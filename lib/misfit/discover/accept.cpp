@@ -279,7 +279,7 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
 /// that candidate is more significant than any unknown curve, else the most significant unknown curve.
 std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
                                              const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
-  const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.log_p < b.log_p; });
+  const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
   const auto unexplained = [&](const UnknownCurve& form, std::string quantities, double p) -> Unexplained {
     const SystemSpec& system = context.estimate.model.system->spec();
     return {form.kind, form.port, std::move(quantities), p, effects_of_unknown_form(form, unknown, system, context.registry)};

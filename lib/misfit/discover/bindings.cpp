@@ -217,6 +217,12 @@ bool may_be_a_parameter(const EffectSpec& effect) {
   return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& r) { return r.parameter_too; });
 }
 
+/// A factor that goes up and down as the motion does is what any nonlinearity of it looks like.
+bool has_frequency(const EffectSpec& effect) {
+  return std::any_of(effect.coefficients.begin(), effect.coefficients.end(),
+                     [](const CoefficientSpec& c) { return c.scan.is_frequency(); });
+}
+
 bool is_in_outputs(const SystemSpec& system, const std::string& port) {
   return std::find(system.ports_in_outputs.begin(), system.ports_in_outputs.end(), port) != system.ports_in_outputs.end();
 }
@@ -263,7 +269,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
   std::vector<Roles> places = {{}};
   if (has_role(effect.ports, "port") || has_role(effect.ports, "to_port")) places = natural_ports(system);
   if (may_be_a_parameter(effect)) {
-    for (const std::string& port : ports_of_parameters(system, true)) places.push_back({{"port", port}});
+    for (const std::string& port : ports_of_parameters(system, !has_frequency(effect))) places.push_back({{"port", port}});
   }
   if (may_be_an_input(effect, "displacement")) places = with_inputs_that_displace(std::move(places), system);
   if (has_role(effect.ports, "to_port")) {

@@ -26,9 +26,9 @@ using Roles = std::map<std::string, std::string>;
 /// factor that is a state of a small system also each other state (a product once), and `output` each output (`signal` follows it), if the
 /// system has a default for `input`, or for `signal`: its way of saying that generic effects make sense there. `parameter` is each free
 /// parameter of a small system that is a port, but for factors of one state or input in one equation, `with` each state and input; where
-/// the effect allows that (Role::parameter_too), `port` is also each such parameter, factors too. The time of all outputs (`sample_time`)
-/// has a place only in a system with inputs: where nothing known has a clock, a motion at another time is as likely. Units are not looked
-/// at otherwise: assemble() refuses what does not suit.
+/// the effect allows that (Role::parameter_too), `port` is also each such parameter, factors too unless it has a frequency. The time of all
+/// outputs (`sample_time`) has a place only in a system with inputs: where nothing known has a clock, a motion at another time is as
+/// likely. Units are not looked at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
 /// Ports of the parameters of a small system that are free unless a study says otherwise; with `factors` too those that only multiply one

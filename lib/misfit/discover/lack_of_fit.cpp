@@ -62,7 +62,7 @@ std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double t
     curve.p_value = sidak(curve.p_value, tests);
     const double share = curve.memory.empty() || !linear ? added.least_share : least_share_of_all;
     if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < share * added.drop) continue;
-    if (!worst || curve.log_p < worst->log_p) worst = curve;
+    if (!worst || curve.order() < worst->order()) worst = curve;
   }
   return worst;
 }

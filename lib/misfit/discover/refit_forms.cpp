@@ -11,28 +11,31 @@
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/core/watch.h"
+#include "misfit/discover/candidate_model.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/exchanged_poles.h"
 #include "misfit/discover/whole_strength.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/does_not_suit.h"
+#include "misfit/model/memory.h"
 
 namespace misfit {
 namespace {
 
-/// A share g of an effect with a time constant tau looks nearly like the whole of it with the time constant g tau.
+/// A share g of an effect with a linear memory of the time constant tau looks nearly like the whole of it with the time constant g tau.
 Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole) {
   Model start = part;
+  const Effect& effect = *part.effects.back().effect;
+  const bool scales = has_linear_memory(effect) || reads_the_past(effect.spec());
   for (const WholeStrength& w : whole) {
     Parameter& p = start.parameters[w.parameter];
     const double share = std::abs(p.value / w.value);
     p.value = w.value;
     p.free = false;
     for (const BoundCoefficient& c : part.effects.back().coefficients) {
-      if (c.parameter < 0 || start.parameters[c.parameter].unit != "s") continue;
+      if (!scales || c.parameter < 0 || start.parameters[c.parameter].unit != "s") continue;
       Parameter& time = start.parameters[c.parameter];
-      if (!time.free) continue;  // it says how sharp the effect is, not how late
       time.value = std::clamp(share * time.value, std::max(time.lower, 1e-3 * time.value), time.upper);
     }
   }

@@ -33,10 +33,11 @@ ForceSensitivity sensitivity_of_forces_and_parameters(const FilterEstimate& esti
 }
 
 std::vector<int> parameters_of_unknown_curves(const Model& model) {
+  if (Evaluator(model).shifts_time()) return {};
   const SystemSpec& system = model.system->spec();
   const std::vector<int> free = model.free_parameters();
   std::vector<int> out;
-  for (const std::string& name : ports_of_parameters(system, true)) {
+  for (const std::string& name : ports_of_parameters(system, false)) {
     if (place_of(free, index_of(model.parameters, name)) >= 0) out.push_back(index_of(system.quantity_ports, name));
   }
   return out;

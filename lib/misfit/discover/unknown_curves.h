@@ -19,8 +19,13 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// Columns of forces, errors, and of the parameters of a small system.
 [[nodiscard]] ForceSensitivity sensitivity_of_forces_and_parameters(const FilterEstimate& estimate);
 
-/// Quantity ports of the parameters that may change in a way of unknown form: of a small system those that are free in the model.
+/// Quantity ports of the parameters that may change in a way of unknown form: of a small system those that are free in the model, but
+/// for factors of one state or input in one equation (what they change is a force of that equation). None where an effect shifts the time
+/// at which outputs are taken: the columns of a constant change are not those of the parameter then.
 [[nodiscard]] std::vector<int> parameters_of_unknown_curves(const Model& model);
+
+/// What a change of a parameter must explain more than a force or an error to be chosen in its place.
+inline constexpr double drop_for_a_parameter = 10.0;
 
 /// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another; or so a
 /// change of a parameter, or an error of an output.
@@ -33,6 +38,9 @@ struct UnknownCurve {
   std::string memory;  ///< what stands for a memory of unknown form in place of this, in words; empty: nothing
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
+
+  /// By which the first of several is chosen: log_p, but a force or an error is the simpler of two that explain about the same.
+  [[nodiscard]] double order() const { return log_p + (kind == PortKind::quantity ? 0.5 * drop_for_a_parameter : 0.0); }
 
   /// "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "an error of y that depends on u", "delay (input = u)"
   [[nodiscard]] std::string label() const;
