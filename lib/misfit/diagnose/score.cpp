@@ -322,17 +322,16 @@ auto as_errors(const SamplePlace& at, const FilterEstimate& estimate, const Eige
 }  // namespace
 
 /// Adds what the mean of f and `ahead` at a place (of G_) does over the step from a sample.
-void ForceSensitivity::add_step(const SamplePlace& at, int place, const Eigen::RowVectorXd& mean, RowMatrix& s) const {
+void ForceSensitivity::add_step(const SamplePlace& at, int place, const CourseOverSteps& course, RowMatrix& s) const {
   const std::size_t NF = places_, first = at.sample * static_cast<std::size_t>(s.rows());
   for (Eigen::Index i = 0; i < s.rows(); ++i) {
     const double gain = G_[at.experiment][(first + static_cast<std::size_t>(i)) * NF + place];
-    if (gain != 0.0) s.row(i) += gain * mean;
+    if (gain != 0.0) s.row(i) += 0.5 * gain * (course.f.row(at.of_all) + course.ahead.row(at.of_all));
   }
 }
 
 Eigen::MatrixXd ForceSensitivity::columns(int port, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
-  return response(estimate_, f.cols(), no_output,
-                  [&](const SamplePlace& at, RowMatrix& s) { add_step(at, port, 0.5 * (f.row(at.of_all) + ahead.row(at.of_all)), s); });
+  return response(estimate_, f.cols(), no_output, [&](const SamplePlace& at, RowMatrix& s) { add_step(at, port, {f, ahead}, s); });
 }
 
 Eigen::MatrixXd ForceSensitivity::parameter_columns(int i, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {
@@ -345,7 +344,9 @@ Eigen::MatrixXd ForceSensitivity::parameter_columns(int i, const Eigen::MatrixXd
         const double slope = slopes[estimate_.traces[at.experiment].place(at.sample, o) * NP + i];
         if (slope != 0.0) v += slope * as_errors(at, estimate_, f, ahead);
       },
-      [&](const SamplePlace& at, RowMatrix& s) { add_step(at, ports_ + i, 0.5 * (f.row(at.of_all) + ahead.row(at.of_all)), s); });
+      [&](const SamplePlace& at, RowMatrix& s) {
+        add_step(at, ports_ + i, {f, ahead}, s);
+      });
 }
 
 Eigen::MatrixXd ForceSensitivity::output_columns(int output, const Eigen::MatrixXd& f, const Eigen::MatrixXd& ahead) const {

@@ -85,7 +85,11 @@ class ForceSensitivity {
  private:
   void run_steps(Stepper& stepper, std::size_t experiment, std::size_t offset);
   void note_outputs(Stepper& stepper, std::size_t experiment);
-  void add_step(const SamplePlace& at, int place, const Eigen::RowVectorXd& mean, RowMatrix& s) const;
+  /// Functions of the states at the start and the end of each step (all samples × m).
+  struct CourseOverSteps {
+    const Eigen::MatrixXd &f, &ahead;
+  };
+  void add_step(const SamplePlace& at, int place, const CourseOverSteps& course, RowMatrix& s) const;
 
   const FilterEstimate& estimate_;
   std::vector<int> parameters_;

@@ -34,10 +34,6 @@ struct SearchContext {
   double families = 1.0;  ///< that a p-value is corrected for
 };
 
-/// Refitted drops nearer than this do not distinguish two effects: beyond it the evidence is "very strong" (Kass & Raftery, Bayes Factors,
-/// J. Am. Stat. Assoc. 90 (1995), section 3.2).
-inline constexpr double tied_drops = 10.0;
-
 /// A refit has failed if its drop is below this share of the chi² that its score promised.
 inline constexpr double least_of_score = 0.5;
 

@@ -24,8 +24,9 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// at which outputs are taken: the columns of a constant change are not those of the parameter then.
 [[nodiscard]] std::vector<int> parameters_of_unknown_curves(const Model& model);
 
-/// What a change of a parameter must explain more than a force or an error to be chosen in its place.
-inline constexpr double drop_for_a_parameter = 10.0;
+/// Drops nearer than this do not distinguish two effects: beyond it the evidence is "very strong" (Kass & Raftery, Bayes Factors,
+/// J. Am. Stat. Assoc. 90 (1995), section 3.2).
+inline constexpr double tied_drops = 10.0;
 
 /// A force of unknown form: hat functions of a quantity on a dynamic port, or for a surface their products with those of another; or so a
 /// change of a parameter, or an error of an output.
@@ -40,7 +41,7 @@ struct UnknownCurve {
   double log_p = 0.0, p_value = 1.0;
 
   /// By which the first of several is chosen: log_p, but a force or an error is the simpler of two that explain about the same.
-  [[nodiscard]] double order() const { return log_p + (kind == PortKind::quantity ? 0.5 * drop_for_a_parameter : 0.0); }
+  [[nodiscard]] double order() const { return log_p + (kind == PortKind::quantity ? 0.5 * tied_drops : 0.0); }
 
   /// "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "an error of y that depends on u", "delay (input = u)"
   [[nodiscard]] std::string label() const;
