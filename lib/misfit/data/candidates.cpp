@@ -82,8 +82,8 @@ void fields(Archive& json, MaybeConst<StoredDiscovery> auto& stored) {
       json("force", d.force);
   json("unexplained_port", d.unexplained_port), json("unexplained_quantity", d.unexplained_quantity);
   json("unexplained_effects", d.unexplained_effects), json("unexplained_error", d.unexplained_error),
-      json("unexplained_parameter", d.unexplained_parameter), json("held", d.fixed_parameters), json("sweep_asks", d.sweep_asks),
-      json("added_force", stored.added);
+      json("unexplained_parameter", d.unexplained_parameter), json("unexplained_alike", d.unexplained_alike),
+      json("held", d.fixed_parameters), json("sweep_asks", d.sweep_asks), json("added_force", stored.added);
   json("seconds", d.seconds);
 }
 
@@ -174,9 +174,13 @@ std::vector<std::string> not_tried_in_words(const Discovery& discovery) {
   return out;
 }
 
+std::string unexplained_place(const std::string& port, bool error, bool parameter) {
+  const char* what = error ? "an error of " : parameter ? "a change of " : "a force on ";
+  return what + port;
+}
+
 std::string unexplained_place(const Discovery& discovery) {
-  const char* what = discovery.unexplained_error ? "an error of " : discovery.unexplained_parameter ? "a change of " : "a force on ";
-  return what + discovery.unexplained_port;
+  return unexplained_place(discovery.unexplained_port, discovery.unexplained_error, discovery.unexplained_parameter);
 }
 
 namespace {

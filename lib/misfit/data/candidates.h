@@ -112,8 +112,9 @@ struct Discovery {
   /// Effects that would add it to the model as a curve of one quantity: of the one that explains most alone first. Empty: nothing is
   /// unexplained, or it is not of that kind.
   std::vector<EffectPlace> unexplained_effects;
-  bool unexplained_error = false;      ///< not a force: an error of the output unexplained_port
-  bool unexplained_parameter = false;  ///< not a force: a change of the parameter unexplained_port
+  std::vector<std::string> unexplained_alike;  ///< what these data cannot tell from it: "a change of R0 that depends on soc"
+  bool unexplained_error = false;              ///< not a force: an error of the output unexplained_port
+  bool unexplained_parameter = false;          ///< not a force: a change of the parameter unexplained_port
   /// Numbers of the system that the study fixes and that, freed, would explain about as much as the best effect does, in words: the most
   /// significant first; missing: none.
   std::optional<std::vector<std::string>> fixed_parameters;
@@ -140,7 +141,8 @@ struct Discovery {
 /// Of each effect that could not be looked for: "overflow: not tried: input 'u' is not recorded".
 [[nodiscard]] std::vector<std::string> not_tried_in_words(const Discovery& discovery);
 
-/// "a force on dw/dt", "an error of V", "a change of Bl".
+/// "a force on dw/dt"; where it is an error of an output or a change of a parameter: "an error of V", "a change of Bl".
+[[nodiscard]] std::string unexplained_place(const std::string& port, bool error, bool parameter);
 [[nodiscard]] std::string unexplained_place(const Discovery& discovery);
 
 /// candidates.json (an array), discovery.json (outcome, verdict, sentences, tried) and added_force.csv (added_force_NAME.csv for further

@@ -289,7 +289,10 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
   if (left && (!any || front_better)) return unexplained(*left, left->quantities(), left->p_value);
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
   const double p = sidak(best->p_value, context.families);
-  return p < context.options.p_accept ? std::optional(unexplained(*best, best->quantity, p)) : std::nullopt;
+  if (!(p < context.options.p_accept)) return std::nullopt;
+  Unexplained out = unexplained(*best, best->quantity, p);
+  out.curve = *best;
+  return out;
 }
 
 }  // namespace

@@ -391,6 +391,14 @@ class Search {
     rank_candidates(out_.candidates);
   }
 
+  std::optional<Unexplained> with_what_is_alike(std::optional<Unexplained> unexplained) const {
+    if (!unexplained || !unexplained->curve) return unexplained;
+    for (const UnknownCurve& curve : curves_alike(*unexplained->curve, unknown_, scores(), options_.p_accept))
+      unexplained->alike.push_back(unexplained_place(curve.port, curve.kind == PortKind::sensor, curve.kind == PortKind::quantity) +
+                                   " that depends on " + curve.quantity);
+    return unexplained;
+  }
+
   void describe_search(const std::optional<Unexplained>& unexplained) {
     out_.force = random_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
@@ -399,7 +407,7 @@ class Search {
       curves += (curve.kind == PortKind::sensor ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     out_.not_tried = candidates_.not_tried;
-    write_verdict(out_, unexplained, options_.p_accept, options_.calibration != nullptr);
+    write_verdict(out_, with_what_is_alike(unexplained), options_.p_accept, options_.calibration != nullptr);
     report_sensor_imitations(screening_, score_, out_);
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
   }

@@ -37,10 +37,15 @@ std::vector<int> parameters_of_unknown_curves(const Model& model) {
   const SystemSpec& system = model.system->spec();
   const std::vector<int> free = model.free_parameters();
   std::vector<int> out;
-  for (const std::string& name : ports_of_parameters(system, false)) {
+  for (const std::string& name : ports_of_parameters(system, true)) {
     if (place_of(free, index_of(model.parameters, name)) >= 0) out.push_back(index_of(system.quantity_ports, name));
   }
   return out;
+}
+
+bool is_more_than_a_force(const PortSpec& parameter, const std::string& quantity) {
+  const bool factor = !parameter.conjugate.empty();
+  return !factor || (!parameter.multiplies.empty() && parameter.multiplies != quantity);
 }
 
 std::string UnknownCurve::label() const {
@@ -93,6 +98,11 @@ const std::string& name_of(const UnknownPlace& place, const ScoreWork& work) {
                                         : system.quantity_ports[work.force.parameters()[place.index]].name;
 }
 
+bool is_tested(const UnknownPlace& place, const std::string& quantity, const ScoreWork& work) {
+  if (place.kind != PortKind::quantity) return true;
+  return is_more_than_a_force(work.estimate.model.system->spec().quantity_ports[work.force.parameters()[place.index]], quantity);
+}
+
 UnknownCurve unknown_curve_at(const ScoreWork& work, const UnknownPlace& place, const Features& f) {
   UnknownCurve out = unknown_form(work, name_of(place, work), f, work.force.columns_at(place.kind, place.index, f.f, f.ahead));
   out.kind = place.kind;
@@ -129,7 +139,9 @@ UnknownTests tests_of_unknown_curves(const ScoreWork& work) {
                    .tests = {}};
   const std::vector<UnknownPlace> places = places_of_unknown_curves(work);
   for (const Features& f : out.features) {
-    for (const UnknownPlace& place : places) out.tests.push_back({&f, place});
+    for (const UnknownPlace& place : places) {
+      if (is_tested(place, f.quantity, work)) out.tests.push_back({&f, place});
+    }
   }
   for (const Features& f : out.pasts) {
     for (const UnknownPlace& place : places) {
@@ -184,6 +196,31 @@ std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn
       all.size(), work.threads, [&](std::size_t k) { all[k] = unknown_curve_at(work, tests.tests[k].place, *tests.tests[k].features); },
       progress);
   return best_of_each(all);
+}
+
+std::vector<UnknownCurve> curves_alike(const UnknownCurve& curve, const std::vector<UnknownCurve>& all, const ScoreWork& work,
+                                       double p_accept) {
+  const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
+  const auto columns = [&](const UnknownCurve& c) {
+    const auto of = std::find_if(features.begin(), features.end(), [&](const Features& f) { return f.quantity == c.quantity; });
+    return of == features.end() ? Eigen::MatrixXd() : work.force.columns_at(c.kind, c.index, of->f, of->ahead);
+  };
+  const auto adds_nothing = [&](const ScoreResult& both, const ScoreResult& one) {
+    return both.dof <= one.dof || !(chi_square_tail(both.chi2 - one.chi2, both.dof - one.dof) < p_accept);
+  };
+  const Eigen::MatrixXd own = columns(curve);
+  std::vector<UnknownCurve> out;
+  for (const UnknownCurve& other : all) {
+    const bool same = other.kind == curve.kind && other.index == curve.index && other.quantity == curve.quantity;
+    if (own.size() == 0 || same || other.result.dof == 0 || std::abs(other.log_p - curve.log_p) > 0.5 * tied_drops) continue;
+    const Eigen::MatrixXd others = columns(other);
+    if (others.size() == 0) continue;
+    Eigen::MatrixXd joint(own.rows(), own.cols() + others.cols());
+    joint << own, others;
+    const ScoreResult both = work.score.test(joint);
+    if (adds_nothing(both, curve.result) && adds_nothing(both, other.result)) out.push_back(other);
+  }
+  return out;
 }
 
 std::vector<UnknownCurve> unknown_own_rates(const ScoreWork& work, int effects) {

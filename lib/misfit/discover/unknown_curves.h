@@ -19,10 +19,13 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// Columns of forces, errors, and of the parameters of a small system.
 [[nodiscard]] ForceSensitivity sensitivity_of_forces_and_parameters(const FilterEstimate& estimate);
 
-/// Quantity ports of the parameters that may change in a way of unknown form: of a small system those that are free in the model, but
-/// for factors of one state or input in one equation (what they change is a force of that equation). None where an effect shifts the time
-/// at which outputs are taken: the columns of a constant change are not those of the parameter then.
+/// Quantity ports of the parameters that may change in a way of unknown form: of a small system those that are free in the model. None
+/// where an effect shifts the time at which outputs are taken: the columns of a constant change are not those of the parameter then.
 [[nodiscard]] std::vector<int> parameters_of_unknown_curves(const Model& model);
+
+/// A change of the parameter with this quantity is no force of one quantity: what changes a mere factor of v with v, or a constant force
+/// with anything, is one.
+[[nodiscard]] bool is_more_than_a_force(const PortSpec& parameter, const std::string& quantity);
 
 /// Drops nearer than this do not distinguish two effects: beyond it the evidence is "very strong" (Kass & Raftery, Bayes Factors,
 /// J. Am. Stat. Assoc. 90 (1995), section 3.2).
@@ -52,6 +55,11 @@ struct UnknownCurve {
 /// of the parameters (parameters_of_unknown_curves()) of which `work.force` has columns.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
 [[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
+
+/// Those of `all` that explain about the same as `curve` (p-values apart by no more than a drop of tied_drops), where neither explains
+/// anything more beside the other (one score test of both): these data cannot tell them apart. None of the past of an input.
+[[nodiscard]] std::vector<UnknownCurve> curves_alike(const UnknownCurve& curve, const std::vector<UnknownCurve>& all, const ScoreWork& work,
+                                                     double p_accept);
 
 /// past_of() what an effect with a memory reads first.
 [[nodiscard]] std::string past_read_by(const SystemSpec& system, const BoundEffect& effect);

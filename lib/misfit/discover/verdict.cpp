@@ -116,9 +116,12 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.unexplained_error = unexplained->kind == PortKind::sensor;
     out.unexplained_parameter = unexplained->kind == PortKind::quantity;
     out.unexplained_effects = unexplained->effects;
+    out.unexplained_alike = unexplained->alike;
     out.outcome = SearchOutcome::unknown_form;
     out.verdict = "Something is missing that depends on " + unexplained->quantity + " (" + unexplained_place(out) + ", " +
                   p_equals(unexplained->p_value) + "), and no effect of the library explains it.";
+    if (!out.unexplained_alike.empty())
+      out.sentences.push_back("these data cannot distinguish it from " + join_words(out.unexplained_alike));
     if (best.actual_drop)
       out.sentences.push_back("the best candidate of the library is " + effect_at(best.effect, best.roles) + " (drop " +
                               format_value(*best.actual_drop) + "): " + best.why);

@@ -4,6 +4,7 @@
 
 #include "misfit/data/signals.h"
 #include "misfit/discover/discover.h"
+#include "misfit/discover/unknown_curves.h"
 
 namespace misfit {
 
@@ -12,7 +13,9 @@ struct Unexplained {
   PortKind kind = PortKind::dynamic;
   std::string port, quantity;
   double p_value = 1.0;
-  std::vector<EffectPlace> effects = {};  ///< that add it to the model as a curve
+  std::vector<EffectPlace> effects = {};             ///< that add it to the model as a curve
+  std::optional<UnknownCurve> curve = std::nullopt;  ///< it is this one, of the model without any effect
+  std::vector<std::string> alike = {};               ///< what these data cannot tell from it, in words
 };
 
 /// The verdict in one sentence, and what would separate a group; `camera`: the measurements are those of a calibrated one.

@@ -309,10 +309,12 @@ class Compiler {
     }
     for (const int k : varied_) {
       const ConstantSpec& constant = spec().constants[k];
+      const Product product = only_product_with(out_->leaves.k(k));
       spec().quantity_ports.push_back({.name = constant.name,
                                        .unit = constant.unit,
                                        .doc = "added to the parameter, wherever it stands",
-                                       .conjugate = only_product_in(out_->leaves.k(k))});
+                                       .conjugate = product.moved,
+                                       .multiplies = product.with});
     }
     spec().quantities = std::move(all);
     note_namesakes();
@@ -321,17 +323,26 @@ class Compiler {
       throw InputError(declaration_.where, "states, inputs, quantities and outputs are together too many");
     set_roles(declaration_, own_ports_);
   }
-  /// Of a leaf that does nothing but multiply one state or input in one equation: the state that this moves; else empty.
-  std::string only_product_in(int leaf) {
-    std::string out;
+  /// What a parameter multiplies, and the state that the product moves.
+  struct Product {
+    std::string with, moved;
+  };
+
+  /// Of a leaf that does nothing but multiply one state or input in one equation; else empty.
+  Product only_product_with(int leaf) {
+    Product out;
     for (std::size_t j = 0; j < equation_nodes_.size(); ++j) {
       if (!uses(equation_nodes_[j], leaf)) continue;
-      const std::vector<int> read = graph().leaves_of(graph().derivatives(equation_nodes_[j], {graph().leaf(leaf)}).front());
-      const auto of_motion = std::count_if(read.begin(), read.end(), [&](int other) { return other < out_->leaves.t(); });
-      if (!out.empty() || of_motion > 1) return "";
-      out = spec().states[j].name;
+      if (!out.moved.empty()) return {};
+      out.moved = spec().states[j].name;
+      for (const int other : graph().leaves_of(graph().derivatives(equation_nodes_[j], {graph().leaf(leaf)}).front())) {
+        if (other >= out_->leaves.t()) continue;
+        if (!out.with.empty()) return {};
+        out.with = other < out_->leaves.nx ? spec().states[other].name : spec().inputs[other - out_->leaves.u(0)].name;
+      }
     }
-    return std::any_of(output_nodes_.begin(), output_nodes_.end(), [&](int node) { return uses(node, leaf); }) ? "" : out;
+    const bool read = std::any_of(output_nodes_.begin(), output_nodes_.end(), [&](int node) { return uses(node, leaf); });
+    return read ? Product{} : out;
   }
   void note_namesakes() {
     for (int o = 0; o < int_size(spec().outputs); ++o) {

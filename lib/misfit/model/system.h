@@ -54,6 +54,7 @@ struct PortSpec {
   std::string name, unit, doc;
   /// Dynamic ports: quantity whose product with it is power; others: what is changed; of a factor of one state or input, what that moves.
   std::string conjugate = {};
+  std::string multiplies = {};  ///< of such a factor: that state or input; empty: a factor of neither, which is a constant force
 };
 
 /// A parameter of the system: geometry, mass, flow. Fixed unless a study frees it.

@@ -343,6 +343,7 @@ class VerdictBuilder {
       if (const ForcePulses* pulses = pulses_left()) return missing_in_pulses(*pulses);
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
+      if (!d.unexplained_alike.empty()) unknown += "; these data cannot distinguish it from " + join_words(d.unexplained_alike);
       const EffectPlace* curve = untried(d.unexplained_effects);
       const Candidate* nearest = nearest_of_library(d);
       if (nearest != nullptr)
