@@ -105,6 +105,35 @@ T = { unit = "K", noise = 0.1 }
   EXPECT_THAT(bindings("varying_parameter", "test_oscillator"), testing::IsEmpty());
 }
 
+/// A fuse: what heats it goes with the square of the current, what cools it with its temperature; R0 that grows with T is no product of T
+/// and I, h that grows with I is.
+TEST(Bindings, AFreeFactorOfAFunctionOfAnInputMayVaryWithAllButThat) {
+  const auto systems = registry_with(R"toml(
+[states]
+T = { unit = "K" }
+[inputs]
+I = { unit = "A" }
+[parameters]
+R0 = { unit = "ohm", value = 0.05, free = true }
+h = { unit = "W/K", value = 0.08, free = true }
+leak = { unit = "W", value = 0.0, free = true }
+C = { unit = "J/K", value = 2.0 }
+[equations]
+T = "(R0*I^2 - h*T - leak)/C"
+[outputs]
+T = { unit = "K", noise = 0.1 }
+)toml");
+  const auto system = systems->system("text").make({});
+  const SystemSpec& spec = system->spec();
+  EXPECT_THAT(enumerate_bindings(systems->effect("varying_parameter").spec(), spec),
+              ElementsAre(Roles{{"parameter", "R0"}, {"with", "T"}}));
+  const auto port = [&](const char* name) { return spec.quantity_ports[index_of(spec.quantity_ports, name)]; };
+  EXPECT_TRUE(is_more_than_a_force(port("R0"), "T") && is_more_than_a_force(port("h"), "I") && is_more_than_a_force(port("h"), "time"));
+  EXPECT_FALSE(is_more_than_a_force(port("R0"), "I")) << "a force that depends on I";
+  EXPECT_FALSE(is_more_than_a_force(port("h"), "T"));
+  EXPECT_LT(index_of(spec.quantity_ports, "leak"), 0) << "a constant force, whatever it depends on";
+}
+
 TEST(Bindings, AnInputThatAnOutputsFormulaReadsIsAPlaceOfItsOwn) {
   SystemSpec tanks = registry().system("test_tanks").make({})->spec();
   const std::string input = tanks.inputs.front().name;

@@ -64,9 +64,9 @@ Signals reactor(bool varies, unsigned seed) {
   return s;
 }
 
-Discovery found_in(const Signals& recording) {
+Discovery found_in(const Signals& recording, const std::string& text = reactor_text) {
   const std::vector<Signals> signals = {recording};  // the estimate points to it
-  const auto systems = registry_with(reactor_text);
+  const auto systems = registry_with(text);
   const ModelRequest request = request_of("text");
   const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
   return discover({estimate, request, *systems, signals}, {});
@@ -89,6 +89,55 @@ TEST(ARateConstantThatVaries, IsNamedWithWhatItVariesWith) {
 TEST(ARateConstantThatVaries, IsNotNamedWhereItIsConstant) {
   const Discovery found = found_in(reactor(false, 4));
   for (const Candidate& c : found.candidates) EXPECT_FALSE(c.accepted) << c.effect << ": " << c.why;
+}
+
+const std::string fuse_text = R"toml(
+[states]
+T = { unit = "K", scale = 40.0 }
+[inputs]
+I = { unit = "A", hold = "zero_order" }
+[parameters]
+R0 = { unit = "ohm", value = 0.06, free = true }
+h = { unit = "W/K", value = 0.06, free = true }
+C = { unit = "J/K", value = 2.0 }
+[equations]
+T = "(R0*I^2 - h*T)/C"
+[outputs]
+T = { unit = "K", noise = 0.2 }
+)toml";
+
+/// A fuse link (over its surroundings) whose resistance grows by 0.4 % per K, as copper's does; by Euler steps of 5 ms, sampled every 0.5
+/// s.
+Signals fuse(unsigned seed) {
+  constexpr double step = 0.5, fine = 0.005;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> level(1.0, 9.0);
+  Signals s;
+  s.name = "fuse";
+  s.measured = {{"T", "K", {}, 0.0}};
+  s.inputs = {{"I", "A", {}, 0.0}};
+  double T = 10.0, I = 5.0;
+  for (int n = 0, next = 0; n < 1200; ++n) {
+    if (n == next) I = level(random), next += 20 + static_cast<int>(random() % 80);
+    s.t.push_back(step * n);
+    s.inputs[0].values.push_back(I);
+    s.measured[0].values.push_back(T + 0.2 * normal(random));
+    for (int i = 0; i < 100; ++i) T += fine * (0.05 * (1.0 + 0.004 * T) * I * I - 0.08 * T) / 2.0;
+  }
+  return s;
+}
+
+/// It multiplies the square of the current in one equation: with the temperature it is no product of temperature and current.
+TEST(AResistanceThatVaries, IsNoProductOfTemperatureAndCurrent) {
+  const Discovery found = found_in(fuse(6), fuse_text);
+  ASSERT_FALSE(found.candidates.empty());
+  const Candidate& first = found.candidates.front();
+  EXPECT_EQ(effect_at(first.effect, first.roles), "varying_parameter (parameter = R0, with = T)") << found.verdict;
+  EXPECT_TRUE(first.accepted) << first.why;
+  const Estimate slope = first.parameters.at("slope");
+  EXPECT_NEAR(slope.value, 2e-4, 4.0 * slope.sigma);
+  EXPECT_LT(slope.sigma, 4e-6);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "misfit/core/error.h"
+#include "misfit/recording/column_facts.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/paths.h"
 
@@ -131,6 +132,26 @@ TEST(Recording, CommandsBehindAnotherWordAreInputsAndSmoothOnesAreSaidToBe) {
   EXPECT_EQ(column(s, "rudder").use, ColumnUse::input);
   EXPECT_TRUE(column(s, "rudder").is_measured_input);
   EXPECT_EQ(column(s, "T_in").unit, "degC");
+}
+
+TEST(Jumps, AreStepsWhateverAWaveBesideThemDoes) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::vector<double> steps, wave, noise, both, commands;
+  for (int k = 0; k < 1000; ++k) {
+    steps.push_back(k / 50 % 2);
+    wave.push_back(std::sin(0.02 * k));
+    noise.push_back(normal(random));
+    both.push_back(steps.back() + 0.1 * wave.back());
+    commands.push_back(std::sin(0.8 * k * k));
+  }
+  EXPECT_TRUE(jumps(steps));
+  EXPECT_TRUE(jumps(both));
+  EXPECT_FALSE(jumps(wave));
+  EXPECT_FALSE(jumps(noise));
+  EXPECT_FALSE(jumps(commands)) << "each sample another one";
+  EXPECT_FALSE(jumps(std::vector<double>(100, 1.0)));
+  EXPECT_FALSE(jumps({}));
 }
 
 TEST(Recording, ColumnsAreWhatTheUserChooses) {

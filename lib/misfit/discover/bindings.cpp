@@ -206,11 +206,22 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
+/// It acts in one equation, through one state or input or none.
+bool is_factor(const PortSpec& parameter) { return !parameter.conjugate.empty() || !parameter.multiplies.empty(); }
+
 /// Each parameter that may vary, once per state and input.
 std::vector<Roles> varying_parameters(const SystemSpec& system) {
   std::vector<std::string> values = names_of(system.states);
   for (const InputSpec& input : system.inputs) values.push_back(input.name);
-  return times(times({{}}, "parameter", ports_of_parameters(system, false)), "with", values);
+  std::vector<Roles> out;
+  for (const std::string& name : ports_of_parameters(system, true)) {
+    const PortSpec& port = system.quantity_ports[index_of(system.quantity_ports, name)];
+    if (!port.conjugate.empty()) continue;
+    for (const std::string& with : values) {
+      if (is_more_than_a_force(port, with)) out.push_back({{"parameter", name}, {"with", with}});
+    }
+  }
+  return out;
 }
 
 bool may_be_a_parameter(const EffectSpec& effect) {
@@ -250,12 +261,16 @@ bool is_generic(const EffectSpec& effect) {
   return std::any_of(effect.ports.begin(), effect.ports.end(), [](const Role& r) { return r.unit[0] == '*' || r.unit[0] == '{'; });
 }
 
+bool is_more_than_a_force(const PortSpec& parameter, const std::string& quantity) {
+  return !is_factor(parameter) || (!parameter.multiplies.empty() && parameter.multiplies != quantity);
+}
+
 std::vector<std::string> ports_of_parameters(const SystemSpec& system, bool factors) {
   std::vector<std::string> out;
   if (!is_small(system)) return out;
   for (const PortSpec& port : system.quantity_ports) {
     const int parameter = index_of(system.constants, port.name);
-    if (parameter >= 0 && system.constants[parameter].free && (factors || port.conjugate.empty())) out.push_back(port.name);
+    if (parameter >= 0 && system.constants[parameter].free && (factors || !is_factor(port))) out.push_back(port.name);
   }
   return out;
 }

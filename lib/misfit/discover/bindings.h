@@ -25,14 +25,19 @@ using Roles = std::map<std::string, std::string>;
 /// `level`. `other_signal` is each other output of the output's unit (with `other_output`: each pair once). `input` is each input, beside a
 /// factor that is a state of a small system also each other state (a product once), and `output` each output (`signal` follows it), if the
 /// system has a default for `input`, or for `signal`: its way of saying that generic effects make sense there. `parameter` is each free
-/// parameter of a small system that is a port, but for factors of one state or input in one equation, `with` each state and input; where
-/// the effect allows that (Role::parameter_too), `port` is also each such parameter, factors too unless it has a frequency. The time of all
+/// parameter of a small system that is a port, `with` each state and input with which it is_more_than_a_force(), but none for those that
+/// multiply one itself: their dependence on another along a line is a product of the two, bilinear. Where the effect allows that
+/// (Role::parameter_too), `port` is also each such parameter, factors too unless it has a frequency. The time of all
 /// outputs (`sample_time`) has a place only in a system with inputs: where nothing known has a clock, a motion at another time is as
 /// likely. Units are not looked at otherwise: assemble() refuses what does not suit.
 [[nodiscard]] std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec& system);
 
-/// Ports of the parameters of a small system that are free unless a study says otherwise; with `factors` too those that only multiply one
-/// state or input in one equation, so that their dependence on another is a product of two of them, bilinear.
+/// Ports of the parameters of a small system that are free unless a study says otherwise; with `factors` too those that act in one equation
+/// through one state or input alone (PortSpec::multiplies).
 [[nodiscard]] std::vector<std::string> ports_of_parameters(const SystemSpec& system, bool factors);
+
+/// A change of the parameter with this quantity is no force of one quantity: what changes a factor of v with v, or a constant force with
+/// anything, is one.
+[[nodiscard]] bool is_more_than_a_force(const PortSpec& parameter, const std::string& quantity);
 
 }  // namespace misfit

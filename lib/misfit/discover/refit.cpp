@@ -260,6 +260,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const bool in_time = !no_maximum() || !watch.spent();
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
+  if (in_time) narrow_smoothings(work, out);
   const bool whole_tried = in_time && fix_whole_strengths(work, screening, out);
   if (whole_tried) try_exchanged_poles(work, out);
   note_half_a_sample(out);

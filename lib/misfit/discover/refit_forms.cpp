@@ -14,6 +14,7 @@
 #include "misfit/discover/candidate_model.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/exchanged_poles.h"
+#include "misfit/discover/operating_range.h"
 #include "misfit/discover/whole_strength.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
@@ -271,6 +272,49 @@ void note_half_a_sample(Refit& out) {
       "hold = \"{}\" for it under [inputs] of the system instead of adding this effect",
       half_a_sample, half, straight ? line : constant, straight ? constant : line, join_words(inputs),
       inputs.size() == 1 ? "is one" : "are such", straight ? "zero_order" : "first_order");
+}
+
+namespace {
+
+/// The estimate's last effect with those of its widths that end at their bound bounded by what is resolved there; nullopt: none ends there,
+/// or hardly more is resolved.
+std::optional<Model> with_narrower_bounds(const FilterEstimate& estimate) {
+  constexpr double at_bound = 1.001, clearly = 0.8;
+  const BoundEffect& effect = estimate.model.effects.back();
+  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
+  std::optional<Model> out;
+  for (std::size_t c = 0; c < coefficients.size(); ++c) {
+    const int at = effect.coefficients[c].parameter;
+    if (!coefficients[c].scan.smooths || at < 0) continue;
+    const Parameter& width = estimate.model.parameters[at];
+    if (!width.free || width.value > at_bound * width.lower) continue;
+    const double resolved = OperatingRange(estimate).lower_bound(effect, c);
+    if (!(resolved < clearly * width.lower)) continue;
+    if (!out) out = estimate.model;
+    out->parameters[at].lower = resolved;
+  }
+  return out;
+}
+
+}  // namespace
+
+void narrow_smoothings(const RefitWork& work, Refit& out) {
+  constexpr int most = 8;
+  for (int k = 0; k < most && out.estimate.converged; ++k) {
+    const std::optional<Model> start = with_narrower_bounds(out.estimate);
+    if (!start) return;
+    FilterOptions options = options_like(work.without, work.threads);
+    options.noise = out.estimate.noise;
+    try {
+      FilterEstimate narrower = estimate_filter(*start, penalties_as_of(work.without, *start), work.experiments, options);
+      if (narrower.out_of_time || !narrower.converged || !(narrower.objective > out.estimate.objective)) return;
+      out.estimate = std::move(narrower);
+    } catch (const TimeLimitReached&) {  // it stays as wide as it was found
+      return;
+    } catch (const RunError&) {
+      return;
+    }
+  }
 }
 
 bool free_drifts(const RefitWork& work, Refit& out) {

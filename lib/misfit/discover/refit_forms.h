@@ -4,7 +4,12 @@
 
 namespace misfit {
 
-// What a refit that has found its maximum tries beside it: the whole effect, the other order of two poles, shapes that drift.
+// What a refit that has found its maximum tries beside it: narrower corners, the whole effect, the other order of two poles, shapes that
+// drift.
+
+/// A width (ScanSpec::smooths) that ends at what the filter resolved beside what was missing: as the effect explains more, the filter
+/// resolves more, and the search goes on down to that, as long as the log-likelihood rises.
+void narrow_smoothings(const RefitWork& work, Refit& out);
 
 /// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it:
 /// from where the refit has found a part of it, and from the best of its screened shapes, beside the values of the estimate without it or

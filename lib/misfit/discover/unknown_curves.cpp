@@ -43,11 +43,6 @@ std::vector<int> parameters_of_unknown_curves(const Model& model) {
   return out;
 }
 
-bool is_more_than_a_force(const PortSpec& parameter, const std::string& quantity) {
-  const bool factor = !parameter.conjugate.empty();
-  return !factor || (!parameter.multiplies.empty() && parameter.multiplies != quantity);
-}
-
 std::string UnknownCurve::label() const {
   if (!memory.empty()) return memory;
   if (kind == PortKind::sensor) return "an error of " + port + " that depends on " + quantity;

@@ -23,10 +23,6 @@ inline constexpr int hats_of_unknown_curves = 8;
 /// where an effect shifts the time at which outputs are taken: the columns of a constant change are not those of the parameter then.
 [[nodiscard]] std::vector<int> parameters_of_unknown_curves(const Model& model);
 
-/// A change of the parameter with this quantity is no force of one quantity: what changes a mere factor of v with v, or a constant force
-/// with anything, is one.
-[[nodiscard]] bool is_more_than_a_force(const PortSpec& parameter, const std::string& quantity);
-
 /// Drops nearer than this do not distinguish two effects: beyond it the evidence is "very strong" (Kass & Raftery, Bayes Factors,
 /// J. Am. Stat. Assoc. 90 (1995), section 3.2).
 inline constexpr double tied_drops = 10.0;

@@ -328,18 +328,21 @@ class Compiler {
     std::string with, moved;
   };
 
-  /// Of a leaf that does nothing but multiply one state or input in one equation; else empty.
+  /// Of a leaf that does nothing but multiply one state or input, or a function of it, in one equation; `moved` only where it multiplies
+  /// that itself, or is a constant; else empty.
   Product only_product_with(int leaf) {
     Product out;
+    bool seen = false;
     for (std::size_t j = 0; j < equation_nodes_.size(); ++j) {
       if (!uses(equation_nodes_[j], leaf)) continue;
-      if (!out.moved.empty()) return {};
-      out.moved = spec().states[j].name;
-      for (const int other : graph().leaves_of(graph().derivatives(equation_nodes_[j], {graph().leaf(leaf)}).front())) {
-        if (other >= out_->leaves.t()) continue;
-        if (!out.with.empty()) return {};
-        out.with = other < out_->leaves.nx ? spec().states[other].name : spec().inputs[other - out_->leaves.u(0)].name;
-      }
+      if (std::exchange(seen, true)) return {};
+      const int slope = graph().derivatives(equation_nodes_[j], {graph().leaf(leaf)}).front();
+      std::vector<int> read = graph().leaves_of(slope);
+      std::erase_if(read, [&](int other) { return other >= out_->leaves.t(); });
+      if (read.size() > 1) return {};
+      const int with = read.empty() ? -1 : read.front();
+      if (with >= 0) out.with = with < out_->leaves.nx ? spec().states[with].name : spec().inputs[with - out_->leaves.u(0)].name;
+      if (with < 0 || !uses(graph().derivatives(slope, {graph().leaf(with)}).front(), with)) out.moved = spec().states[j].name;
     }
     const bool read = std::any_of(output_nodes_.begin(), output_nodes_.end(), [&](int node) { return uses(node, leaf); });
     return read ? Product{} : out;

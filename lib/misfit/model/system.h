@@ -52,9 +52,9 @@ struct QuantitySpec {
 
 struct PortSpec {
   std::string name, unit, doc;
-  /// Dynamic ports: quantity whose product with it is power; others: what is changed; of a factor of one state or input, what that moves.
+  /// Dynamic ports: quantity whose product with it is power; others: what is changed; of a mere factor (or a constant), what that moves.
   std::string conjugate = {};
-  std::string multiplies = {};  ///< of such a factor: that state or input; empty: a factor of neither, which is a constant force
+  std::string multiplies = {};  ///< of what acts in one equation through one state or input: that; with a conjugate along a straight line
 };
 
 /// A parameter of the system: geometry, mass, flow. Fixed unless a study frees it.

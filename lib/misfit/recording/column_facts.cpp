@@ -10,6 +10,7 @@
 
 #include "misfit/core/column_header.h"
 #include "misfit/core/text.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -117,6 +118,23 @@ bool is_smooth(const std::vector<double>& values) {
   }
   constexpr double alike = 0.5;
   return squares > 0.0 && products > alike * squares;
+}
+
+bool jumps(const std::vector<double>& values) {
+  std::vector<double> sizes;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double change = std::abs(values[i] - values[i - 1]);
+    if (std::isfinite(change)) sizes.push_back(change);
+  }
+  if (sizes.empty()) return false;
+  constexpr double large = 10.0, nearly_all = 0.8, few = 0.1;
+  const double usual = median(sizes);
+  double squares = 0.0, of_large = 0.0, count = 0.0;
+  for (const double size : sizes) {
+    squares += size * size;
+    if (size > large * usual) of_large += size * size, count += 1.0;
+  }
+  return squares > 0.0 && of_large > nearly_all * squares && count < few * static_cast<double>(sizes.size());
 }
 
 std::vector<std::string> limit_remarks(const std::string& header, const std::vector<double>& values) {

@@ -28,6 +28,10 @@ namespace misfit {
 /// Neighbouring differences are alike (their autocorrelation is above 0.5): a ramp or a wave, not jumps and not noise.
 [[nodiscard]] bool is_smooth(const std::vector<double>& values);
 
+/// Nearly all of its motion is in few changes from one sample to the next, ten times as large as the usual one: steps, whatever a wave
+/// beside them does.
+[[nodiscard]] bool jumps(const std::vector<double>& values);
+
 // By name, case and a number behind it ("u1") aside.
 [[nodiscard]] bool is_called_input(const std::string& name);
 /// "t_in" and "t_out": two ends of something.

@@ -48,7 +48,7 @@ void take_what_nothing_predicts(RecordingSurvey& survey) {
     const auto helped = std::find_if(outputs.begin(), outputs.end(), moved);
     if (found[c->name].matters() || helped == outputs.end()) continue;
     c->use = ColumnUse::input;
-    c->is_measured_input = true;
+    c->is_measured_input = !jumps(longest->find(c->name)->values);
     c->why = "nothing else in the file helps to predict it, unlike " + (*helped)->name;
   }
 }

@@ -15,6 +15,7 @@
 #include "misfit/formula/syntax.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/role_units.h"
+#include "misfit/recording/column_facts.h"
 
 namespace misfit {
 namespace {
@@ -82,6 +83,21 @@ void name_parts(std::set<std::string>& taken, GuessedOutput& output) {
   output.rest = part(pulled ? "_rest" : "_offset");
 }
 
+struct ReasonedHold {
+  const char *hold, *reason;
+};
+
+/// What it is between its samples.
+ReasonedHold hold_of(const ColumnSurvey& input, const std::vector<double>& values) {
+  if (input.is_measured_input)
+    return {"first_order", is_smooth(values) ? "; it varies smoothly, so straight between samples"
+                                             : "; taken as measured, so straight between samples, \"zero_order\" if it is a command"};
+  if (jumps(values)) return {"zero_order", input.repeat_share > 0.2 ? "" : "; it jumps, so it is held until the next sample"};
+  return {"zero_order", input.repeat_share > 0.2
+                            ? ""
+                            : "; a computer's output is held until the next sample, \"first_order\" if it was measured between"};
+}
+
 void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedModel& model, GuessData& data) {
   std::vector<std::string> left_out;
   for (const ColumnSurvey* c : survey.of_use(ColumnUse::input)) {
@@ -91,14 +107,12 @@ void guess_inputs(const RecordingSurvey& survey, const Table& table, GuessedMode
     }
     model.inputs.push_back(c->name);
     model.input_units.push_back(unit_in_si(c->unit));
-    const bool steps = c->repeat_share > 0.2;
-    model.holds.emplace_back(c->is_measured_input ? "first_order" : "zero_order");
-    model.hold_reasons.emplace_back(
-        c->is_measured_input ? "; it varies smoothly, so straight between samples"
-        : steps              ? ""
-                             : "; a computer's output is held until the next sample, \"first_order\" if it was measured between");
-    data.drivers.push_back(
-        {.values = table.values(c->name, model.input_units.back()), .smooth = c->is_measured_input, .named = c->chosen_by_user});
+    GuessDriver driver{
+        .values = table.values(c->name, model.input_units.back()), .smooth = c->is_measured_input, .named = c->chosen_by_user};
+    const auto& [hold, reason] = hold_of(*c, driver.values);
+    model.holds.emplace_back(hold);
+    model.hold_reasons.emplace_back(reason);
+    data.drivers.push_back(std::move(driver));
   }
   note_left_out("inputs", left_out, fmt::format("a first model has at most {} inputs", most_guessed.inputs), model.remarks);
 }
