@@ -63,6 +63,7 @@ TEST(AHeldInputTakenForAStraightOne, IsSaidBesideTheOffsetThatItLooksLike) {
   ASSERT_EQ(first.effect, "time_offset") << first.why;
   EXPECT_NEAR(first.parameters.at("clock_offset").value, -0.5 * step, 0.1 * step);
   ASSERT_TRUE(first.also);
+  EXPECT_EQ(first.holds, (std::map<std::string, std::string>{{"outside", "zero_order"}}));
   EXPECT_THAT(*first.also, testing::AllOf(testing::HasSubstr("half a sampling interval (300 s)"), testing::HasSubstr("zero_order")));
 }
 
@@ -71,6 +72,7 @@ TEST(AHeldInputTakenForAStraightOne, IsNotSaidOfALongerDelay) {
   ASSERT_EQ(first.effect, "delay") << first.why;
   EXPECT_NEAR(first.parameters.at("delay").value, 2.5 * step, 0.1 * step);
   EXPECT_FALSE(first.also) << *first.also;
+  EXPECT_FALSE(first.holds);
 }
 
 }  // namespace

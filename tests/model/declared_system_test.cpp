@@ -101,6 +101,19 @@ TEST(DeclaredDuffing, SaysWhatMisfitWantsToKnow) {
   EXPECT_NEAR(spec.fastest_rate, std::sqrt(30.0 + 150.0 * 0.01), 1e-12);
 }
 
+TEST(DeclaredHold, OfAStudyIsInPlaceOfThatOfTheFile) {
+  const auto hold_of = [](const std::map<std::string, HoldStudy>& holds) {
+    return declared_system(duffing_text, "text.toml", "text", holds).make({})->spec().inputs.at(0).hold;
+  };
+  EXPECT_EQ(hold_of({}), Hold::first_order);
+  EXPECT_EQ(hold_of({{"u", {"zero_order", {}}}}), Hold::zero_order);
+  EXPECT_EQ(hold_of({{"u", {"band_limited", {}}}}), Hold::band_limited);
+  EXPECT_THAT(message_of<InputError>([&] {
+                (void)hold_of({{"v", {"zero_order", {"study.toml", 4, 9}}}});
+              }),
+              AllOf(HasSubstr("study.toml:4"), HasSubstr("no input 'v'"), HasSubstr("u")));
+}
+
 /// A cell: its voltage is a formula of the current that charges the capacitor, too.
 const std::string cell_text = R"toml(
 [states]

@@ -409,6 +409,25 @@ TEST(Verdict, HalfASamplingIntervalIsTheHoldOfAnInput) {
               testing::StartsWith("time_offset is half a sampling interval late: it is the hold of an input that is wrong, not the model"));
 }
 
+TEST(Verdict, AnInputThatIsHeldOtherwiseComesBeforeTheEffectThatItLooksLike) {
+  Case c;
+  Candidate clock = candidate("time_offset", 1e-9, true);
+  clock.parameters = {{"clock_offset", {-0.05, 0.006, "s"}}};
+  clock.holds = std::map<std::string, std::string>{{"wind", "zero_order"}};
+  clock.also = std::string(half_a_sample) + " (0.05 s), as …";
+  c.discovery = searched({clock}, SearchOutcome::accepted, "Missing: time_offset");
+  EXPECT_THAT(
+      c.verdict().sentence,
+      testing::StartsWith("Between its samples wind is rather constant, where the model takes it as a straight line: half a sampling "
+                          "interval is what time_offset, with clock_offset = -0.0500 ± 0.0060 s (p = 1e-09) needs to make up for "
+                          "that; the right hold comes first"));
+  EXPECT_THAT(c.verdict().next, AllOf(testing::StartsWith("misfit set "), HasSubstr("system.hold.wind=zero_order"),
+                                      HasSubstr(" && misfit run "), EndsWith(" --auto")));
+  c.discovery->candidates.front().holds = std::map<std::string, std::string>{{"sun", "first_order"}, {"wind", "first_order"}};
+  EXPECT_THAT(c.verdict().sentence,
+              testing::StartsWith("Between their samples sun and wind are rather straight, where the model takes them as constant"));
+}
+
 TEST(Verdict, AShapeThatIsKeptIsSaidWithTheEstimates) {
   Case c;
   c.add_effect();

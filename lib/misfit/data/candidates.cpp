@@ -46,7 +46,7 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json("rank", c.rank), json("effect", c.effect), json("ports", c.ports), json("score", c.score);
   json("predicted_drop", c.predicted_drop), json("actual_drop", c.actual_drop);
   json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
-  json.if_there("also", c.also), json.if_there("remaining", c.remaining);
+  json.if_there("also", c.also), json.if_there("holds", c.holds), json.if_there("remaining", c.remaining);
   json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters),
       json("family", NameOf(c.family, candidate_family_names));
   json("roles", c.roles), json("dof", c.dof), json("described", c.absorbed), json("force", c.force);

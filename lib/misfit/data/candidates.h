@@ -37,9 +37,10 @@ struct Candidate {
   double score = 0.0;                        ///< chi² of the score test at the best cell
   int dof = 1;
   double predicted_drop = 0.0;
-  std::optional<double> actual_drop;    ///< after refitting; missing: not refitted
-  std::optional<double> held_out_gain;  ///< of the held-out log-likelihood
-  std::optional<std::string> also;      ///< other values that explain hardly less, or half_a_sample and what follows from it, in words
+  std::optional<double> actual_drop;                        ///< after refitting; missing: not refitted
+  std::optional<double> held_out_gain;                      ///< of the held-out log-likelihood
+  std::optional<std::map<std::string, std::string>> holds;  ///< inputs that are rather held otherwise, and how: that is what it looks like
+  std::optional<std::string> also;  ///< other values that explain hardly less, or half_a_sample and what follows from it, in words
   /// What is still significant beside it, the only reason against it: "an unknown surface dv/dt(y, u)".
   std::optional<std::string> remaining;
   double p_value = 1.0;            ///< corrected for cells scanned and families

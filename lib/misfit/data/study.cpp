@@ -51,7 +51,13 @@ void read_system(const Section& root, Study& study) {
   study.system_file = study_parts::existing_file(system, "file", study.folder);
   for (const std::string& key : system.keys()) {
     study.system_where[key] = system.where(key);
-    if (key != "kind" && key != "file") read_system_option(system, key, study);
+    if (key != "kind" && key != "file" && key != "hold") read_system_option(system, key, study);
+  }
+  if (system.has("hold")) {
+    if (!study.system_file) system.fail("hold", "it is for the inputs of a declared system (file)");
+    const DescribedSection hold = study_parts::described(system, "hold", "system.hold");
+    for (const std::string& input : hold.keys()) study.system_hold[input] = {*hold.choice(input), hold.where(input)};
+    hold.finish();
   }
   system.finish();
 }

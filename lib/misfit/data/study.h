@@ -177,6 +177,12 @@ struct UncertaintyStudy {
   Source where, where_camera, where_profile;
 };
 
+/// [system] hold: one of those of an input of a declared system.
+struct HoldStudy {
+  std::string hold;
+  Source where;
+};
+
 /// A study as written. Everything that can be checked without the model has been checked.
 struct Study {
   std::filesystem::path file, folder;
@@ -188,7 +194,8 @@ struct Study {
   std::map<std::string, config::Number> system_numbers;
   std::map<std::string, bool> system_flags;  ///< "induced_angle"
   std::map<std::string, Source> system_where;
-  std::optional<config::Section> geometry;  ///< read key by key by whoever knows the units (rig and system); finish() after that
+  std::map<std::string, HoldStudy> system_hold;  ///< input → what it is between its samples, in place of what the file says
+  std::optional<config::Section> geometry;       ///< read key by key by whoever knows the units (rig and system); finish() after that
   CameraStudy camera;
   VideoStudy video;
   bool has_camera = false;

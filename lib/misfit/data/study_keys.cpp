@@ -43,8 +43,16 @@ KeyGroup system_group() {
      {{.name = "kind", .otherwise = "file is given instead", .meaning = "Name of a system of the program."},
       {.name = "file", .type = Type::file, .otherwise = "kind is given instead",
        .meaning = "Declared system (TOML); its keys: misfit help system."},
+      {.name = "hold", .type = Type::table, .otherwise = "as the file says",
+       .meaning = "Input = what it is between its samples, in place of what the file says: { u = \"zero_order\" }."},
       {.name = "OPTION", .type = Type::flag, .otherwise = "as the system says", .any = true,
        .meaning = "Option of the system, as induced_angle = false of parachute_planar."}}};
+}
+
+KeyGroup hold_group() {
+  return {"system.hold", "What the inputs of a declared system (file) are between their samples.",
+     {{.name = "INPUT", .type = Type::choice, .otherwise = "as the file says", .choices = {"zero_order", "first_order", "band_limited"}, .any = true,
+       .meaning = "Constant until the next sample, straight to it, or a cubic spline (sampled behind an anti-aliasing filter)."}}};
 }
 
 Key rig(const char* name, const char* unit, const char* meaning) {
@@ -390,7 +398,7 @@ std::vector<KeyGroup> simulate_groups() {
 // clang-format on
 
 std::vector<KeyGroup> all_groups() {
-  std::vector<KeyGroup> out{study_group(), system_group(), geometry_group(), camera_group()};
+  std::vector<KeyGroup> out{study_group(), system_group(), hold_group(), geometry_group(), camera_group()};
   const auto add = [&](const std::vector<KeyGroup>& groups) { out.insert(out.end(), groups.begin(), groups.end()); };
   add(video_groups());
   add({experiment_group(), columns_group()});

@@ -368,6 +368,7 @@ class Search {
     c.parameters = e.refit->parameters;
     c.roles = e.refit->moved.value_or(e.screening->candidate_model->roles);
     c.also = e.refit->also.empty() ? std::nullopt : std::optional(e.refit->also);
+    c.holds = e.refit->holds.empty() ? std::nullopt : std::optional(e.refit->holds);
     c.free = e.refit->free;
     c.fixed = e.refit->fixed;
     const FilterEstimate& there = e.refit->estimate;

@@ -20,6 +20,7 @@ struct Refit {
   std::vector<std::string> free, fixed;                     ///< its coefficients that are estimated or fixed unlike the effect's file says
   std::string partial;                                      ///< why it is no whole effect (whole_strength.h); empty: it is, or may be
   std::optional<std::map<std::string, std::string>> moved;  ///< its roles, where it acts on its input itself now (whole_strength.h)
+  std::map<std::string, std::string> holds;                 ///< Candidate::holds; empty: none
   std::string also;  ///< another explanation that these data hardly tell from this one, in words; empty: none found
 };
 

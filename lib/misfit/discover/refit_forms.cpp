@@ -267,11 +267,13 @@ void note_half_a_sample(Refit& out) {
   }
   if (inputs.empty()) return;
   constexpr const char *constant = "constant", *line = "a straight line";
+  const char* hold = straight ? "zero_order" : "first_order";
+  for (const std::string& input : inputs) out.holds.emplace(input, hold);
   out.also = fmt::format(
-      "{} ({:.4g} s), as an input seems shifted that the model takes as {} between its samples and that is {} there: if {} {}, write "
-      "hold = \"{}\" for it under [inputs] of the system instead of adding this effect",
+      "{} ({:.4g} s), as an input seems shifted that the model takes as {} between its samples and that is {} there: if {} {}, its hold is "
+      "\"{}\" ([system] hold of the study, or [inputs] of the system's file), which comes before this effect",
       half_a_sample, half, straight ? line : constant, straight ? constant : line, join_words(inputs),
-      inputs.size() == 1 ? "is one" : "are such", straight ? "zero_order" : "first_order");
+      inputs.size() == 1 ? "is one" : "are such", hold);
 }
 
 namespace {

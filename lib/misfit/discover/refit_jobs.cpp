@@ -45,11 +45,11 @@ SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const Screen
 }  // namespace
 
 std::string pack(const SteppedRefit& result, const ScreeningResult& effect) {
-  const auto& [ok, out_of_time, why, drop, estimate, request, parameters, free, fixed, partial, moved, also] = result.refit;
+  const auto& [ok, out_of_time, why, drop, estimate, request, parameters, free, fixed, partial, moved, holds, also] = result.refit;
   static_cast<void>(request);  // the candidate model's, moved
   ByteWriter bytes;
   bytes(effect.candidate_model->effect, effect.candidate_model->roles, result.predicted_drop, ok, out_of_time, why, drop, parameters, free,
-        fixed, partial, moved.has_value(), moved.value_or(std::map<std::string, std::string>{}), also);
+        fixed, partial, moved.has_value(), moved.value_or(std::map<std::string, std::string>{}), holds, also);
   if (ok) write_estimate(bytes, estimate);
   return bytes.take();
 }
@@ -61,7 +61,7 @@ SteppedRefit unpack_refit(std::string_view bytes, const RefitWork& work, const S
   std::map<std::string, std::string> roles, moved;
   bool has_moved = false;
   reader(name, roles, out.predicted_drop, out.refit.ok, out.refit.out_of_time, out.refit.why, out.refit.drop, out.refit.parameters,
-         out.refit.free, out.refit.fixed, out.refit.partial, has_moved, moved, out.refit.also);
+         out.refit.free, out.refit.fixed, out.refit.partial, has_moved, moved, out.refit.holds, out.refit.also);
   if (name != effect.candidate_model->effect || roles != effect.candidate_model->roles)
     throw RunError("a stored refit is of '" + name + "' and not of '" + effect.candidate_model->effect + "'");
   out.refit.request = effect.candidate_model->request;

@@ -17,7 +17,9 @@ inline constexpr std::size_t states_of_a_small_system = 3;
 /// quantity port as well; an input before such changes is the quantity NAME_given. So is every parameter that stands in
 /// several equations and outputs, and in a system of up to three states each whose action depends on states or inputs.
 /// An output that is a formula of an input or quantity sees what effects add to it. InputError with file, line and column.
-[[nodiscard]] SystemType declared_system(const std::string& text, const std::string& file, const std::string& key);
+/// `holds`: what its inputs are between their samples, in place of what the text says.
+[[nodiscard]] SystemType declared_system(const std::string& text, const std::string& file, const std::string& key,
+                                         const std::map<std::string, HoldStudy>& holds = {});
 
 /// Adds a declared system that is part of the program: the list that misfit_add_effects generates calls it.
 void register_declared(Registry& registry, const char* key, const char* text);

@@ -10,7 +10,7 @@ std::shared_ptr<const Registry> study_registry(const Study& study, const Registr
   auto own = std::make_shared<Registry>(Registry::over(base));
   if (study.system_file) {
     const std::string key = study.system_file->stem().string();
-    own->add(declared_system(read_file(*study.system_file), study.system_file->string(), key));
+    own->add(declared_system(read_file(*study.system_file), study.system_file->string(), key, study.system_hold));
   }
   std::unique_ptr<System> system;
   for (const auto& effect : study.effects) {

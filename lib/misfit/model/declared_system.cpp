@@ -311,8 +311,11 @@ std::unique_ptr<System> make_system(std::shared_ptr<const Compiled> compiled) {
 
 namespace misfit {
 
-SystemType declared_system(const std::string& text, const std::string& file, const std::string& key) {
-  const auto compiled = declared::compile(declared::read(text, file, key));
+SystemType declared_system(const std::string& text, const std::string& file, const std::string& key,
+                           const std::map<std::string, HoldStudy>& holds) {
+  declared::Declaration declaration = declared::read(text, file, key);
+  for (const auto& [name, study] : holds) declared::set_hold(declaration, name, study);
+  const auto compiled = declared::compile(std::move(declaration));
   return {key, {}, [compiled](const SystemOptions&) { return declared::make_system(compiled); }};
 }
 

@@ -13,6 +13,10 @@
 namespace misfit::declared {
 namespace {
 
+Hold hold_called(const std::string& name) {
+  return name == "zero_order" ? Hold::zero_order : name == "band_limited" ? Hold::band_limited : Hold::first_order;
+}
+
 using config::DescribedSection;
 using config::Section;
 
@@ -141,8 +145,7 @@ class Reader {
     input.name = name;
     input.unit = unit_of(s);
     input.doc = *s.text("doc");
-    const std::string hold = *s.choice("hold");
-    input.hold = hold == "zero_order" ? Hold::zero_order : hold == "band_limited" ? Hold::band_limited : Hold::first_order;
+    input.hold = hold_called(*s.choice("hold"));
     input.delay = *s.value("delay");
     out_.spec.inputs.push_back(input);
   }
@@ -251,5 +254,14 @@ class Reader {
 }  // namespace
 
 Declaration read(const std::string& text, const std::string& file, const std::string& key) { return Reader(text, file, key).run(); }
+
+void set_hold(Declaration& declaration, const std::string& input, const HoldStudy& study) {
+  std::vector<InputSpec>& inputs = declaration.spec.inputs;
+  const int i = index_of(inputs, input);
+  std::vector<std::string> names;
+  for (const InputSpec& known : inputs) names.push_back(known.name);
+  if (i < 0) throw InputError(study.where, "[system] hold: the system has no input '" + shown(input) + "'" + suggest(input, names));
+  inputs[i].hold = hold_called(study.hold);
+}
 
 }  // namespace misfit::declared

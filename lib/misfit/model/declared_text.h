@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "misfit/core/keys.h"
+#include "misfit/data/study.h"
 #include "misfit/formula/build.h"
 #include "misfit/model/system.h"
 
@@ -29,5 +30,8 @@ struct Declaration {
 };
 
 [[nodiscard]] Declaration read(const std::string& text, const std::string& file, const std::string& key);
+
+/// InputError at `study`: it has no such input.
+void set_hold(Declaration& declaration, const std::string& input, const HoldStudy& study);
 
 }  // namespace misfit::declared

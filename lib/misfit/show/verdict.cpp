@@ -247,20 +247,39 @@ class VerdictBuilder {
   }
 
   void missing(const Candidate& best) {
-    const std::string name = effect_at(best.effect, best.roles);
-    const std::string values = best.parameters.empty() ? "" : ", with " + parameters_in_words(best);
     if (!effects_added_) with_candidate(best);
-    std::string sentence = best.group.size() > 1
-                               ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: " + name + " fits best"
-                               : (is_of_the_hold(best.also) ? "the hold of an input is wrong, which looks like "
-                                  : effects_added_          ? "still missing: "
-                                                            : "missing: ") +
-                                     name;
-    sentence += values + " (" + p_equals(best.p_value) + ")";
-    if (best.also) sentence += "; " + *best.also;
+    std::string sentence = best.holds ? hold_is_another(best) : is_missing(best);
     if (const std::string change = effects_added_ ? change_by_ladder() : ""; !change.empty())
       sentence += "; with " + names_added(*in_.ladder) + " " + change;
-    say(best.group.size() > 1 ? VerdictKind::several_possible : VerdictKind::missing, sentence, command("add", best.effect));
+    say(best.group.size() > 1 && !best.holds ? VerdictKind::several_possible : VerdictKind::missing, sentence,
+        best.holds ? hold_otherwise(*best.holds) : command("add", best.effect));
+  }
+  [[nodiscard]] static std::string with_values(const Candidate& best) {
+    const std::string values = best.parameters.empty() ? "" : ", with " + parameters_in_words(best);
+    return effect_at(best.effect, best.roles) + values + " (" + p_equals(best.p_value) + ")";
+  }
+  [[nodiscard]] std::string is_missing(const Candidate& best) const {
+    const std::string which = best.group.size() > 1
+                                  ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: best fits "
+                              : effects_added_ ? std::string("still missing: ")
+                                               : std::string("missing: ");
+    return which + with_values(best) + (best.also ? "; " + *best.also : "");
+  }
+  [[nodiscard]] static std::string hold_is_another(const Candidate& best) {
+    std::vector<std::string> inputs;
+    for (const auto& [input, hold] : *best.holds) inputs.push_back(input);
+    const bool one = inputs.size() == 1, held = best.holds->begin()->second == "zero_order";
+    return fmt::format(
+        "between {} samples {} {} {}, where the model takes {} as {}: half a sampling interval is what {} needs to make up "
+        "for that; the right hold comes first, since what is found beside a wrong one may stand for it",
+        one ? "its" : "their", join_words(inputs), one ? "is rather" : "are rather", held ? "constant" : "straight", one ? "it" : "them",
+        held ? "a straight line" : "constant", with_values(best));
+  }
+  /// The command that sets what inputs are between their samples, and runs the study again.
+  [[nodiscard]] std::string hold_otherwise(const std::map<std::string, std::string>& holds) const {
+    std::string keys;
+    for (const auto& [input, hold] : holds) keys += (keys.empty() ? "" : " ") + shell_word("system.hold." + input + "=" + hold);
+    return misfit_command("set", in_.study, keys, "") + " && " + command("run") + " --auto";
   }
   /// The random force that the refit with the candidate leaves.
   void with_candidate(const Candidate& best) {
@@ -344,6 +363,7 @@ class VerdictBuilder {
       std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
                                         effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
       if (!d.unexplained_alike.empty()) unknown += "; these data cannot distinguish it from " + join_words(d.unexplained_alike);
+      if (const Candidate* first = candidate_to_begin_with(d); first != nullptr && first->holds) return missing(*first);
       const EffectPlace* curve = untried(d.unexplained_effects);
       const Candidate* nearest = nearest_of_library(d);
       if (nearest != nullptr)

@@ -77,6 +77,7 @@ class Extension {
       families_ = static_cast<double>(discovery.candidates.size());
       const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
       if (next && has_left(*next)) break;
+      if (is_of_a_hold(next, discovery)) break;
       if (next && !add(*next, alternatives_to(*next, discovery))) {
         ladder_.gained_too_little(effect_at(next->effect, next->roles), why_off_);
         break;
@@ -90,6 +91,13 @@ class Extension {
   }
 
  private:
+  /// The next rung would stand for an input that is held otherwise between its samples than the model says: that is to be mended first,
+  /// since what is found beside it may stand for it, too.
+  [[nodiscard]] static bool is_of_a_hold(const std::optional<Candidate>& next, const Discovery& discovery) {
+    const Candidate* candidate = next ? &*next : candidate_to_begin_with(discovery);
+    return candidate != nullptr && candidate->holds.has_value();
+  }
+
   [[nodiscard]] bool has_left(const Candidate& candidate) const {
     return std::any_of(left_.begin(), left_.end(),
                        [&](const Candidate& c) { return c.effect == candidate.effect && c.roles == candidate.roles; });
