@@ -42,10 +42,18 @@ void read_system_option(const Section& system, const std::string& key, Study& st
   }
 }
 
+void read_hold(const Section& system, Study& study) {
+  if (!system.has("hold")) return;
+  const DescribedSection hold = study_parts::described(system, "hold", "system.hold");
+  for (const std::string& input : hold.keys()) study.system_hold[input] = {*hold.choice(input), hold.where(input)};
+  hold.finish();
+}
+
 void read_system(const Section& root, Study& study) {
   if (!root.has("system"))
     throw InputError({study.file.string(), 0, 0}, "the section [system] is missing: it names the model, as kind = \"parachute_spherical\"");
   const DescribedSection system = study_parts::described(root, "system");
+  read_hold(system, study);
   if (system.has("kind") == system.has("file")) system.fail("", "exactly one of kind and file is needed");
   study.system_kind = system.text("kind").value_or("");
   study.system_file = study_parts::existing_file(system, "file", study.folder);
@@ -53,12 +61,7 @@ void read_system(const Section& root, Study& study) {
     study.system_where[key] = system.where(key);
     if (key != "kind" && key != "file" && key != "hold") read_system_option(system, key, study);
   }
-  if (system.has("hold")) {
-    if (!study.system_file) system.fail("hold", "it is for the inputs of a declared system (file)");
-    const DescribedSection hold = study_parts::described(system, "hold", "system.hold");
-    for (const std::string& input : hold.keys()) study.system_hold[input] = {*hold.choice(input), hold.where(input)};
-    hold.finish();
-  }
+  if (!study.system_hold.empty() && !study.system_file) system.fail("hold", "it is for the inputs of a declared system (file)");
   system.finish();
 }
 
