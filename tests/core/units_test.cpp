@@ -64,6 +64,10 @@ TEST(ParseUnit, CountsAmountsOfSubstance) {
   EXPECT_DOUBLE_EQ(parse_unit("kmol/m^3").to_si, parse_unit("mol/l").to_si);
   EXPECT_EQ(parse_unit("mmol").dimension, Dimension{});
   EXPECT_EQ(parse_unit("kOhm").to_si, 1000.0 * parse_unit("ohm").to_si);
+  EXPECT_NEAR(parse_unit("mg/dL").to_si, 0.01, 1e-15) << "kg/m^3";
+  EXPECT_NEAR(parse_unit("mL/min").to_si, 1e-6 / 60.0, 1e-20);
+  EXPECT_TRUE(parse_unit("mOhm uF").same_dimension(parse_unit("s")));
+  EXPECT_NEAR(parse_unit("mOhm uF").to_si, 1e-9, 1e-22);
 }
 
 TEST(ParseUnit, TakesNothingAndADashAsDimensionless) {

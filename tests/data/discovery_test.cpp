@@ -330,9 +330,14 @@ TEST(CandidateToBeginWith, IsNotChosenPastWhatExplainsMore) {
   curve.dof = 8;
   curve.score = 315.0;
   Discovery d = of_unknown_form({imitation("coulomb_friction", 300.0, 190.0), curve});
+  d.unexplained_effects = {{"unknown_force", {{"of", "w"}, {"port", "dw/dt"}}}};
   EXPECT_NE(candidate_to_begin_with(d), nullptr) << "299 after its 8 coefficients";
   d.candidates.back().score = 317.0;
   EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+  d.unexplained_effects.clear();
+  EXPECT_NE(candidate_to_begin_with(d), nullptr) << "a curve that nothing adds stands in the way of nothing";
+  d.candidates.back().score = 617.0;
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr) << "more than twice as much";
   Candidate refused;
   refused.effect = "delay";
   refused.actual_drop = 599.0;

@@ -13,6 +13,7 @@ namespace misfit {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::HasSubstr;
 
 using EveryKey = StudyFolder;
 
@@ -114,23 +115,22 @@ TEST_F(EveryKey, OfAPlaneInAFilmIsRefusedInWords) {
   const auto refused = [&](const std::string& video) {
     return error_with("[[experiment]]\nvideo = \"flight.mkv\"\n[camera]\nsweep = \"static_sweep.csv\"\n[video]\n" + video);
   };
-  using testing::HasSubstr;
-  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 6 }\n"), testing::HasSubstr("square = \"30 mm\""));
-  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 6, square = \"30 mm\", squares = 4 }\n"), testing::HasSubstr("squares"));
-  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 2, square = \"30 mm\" }\n"), testing::HasSubstr("rows"));
+  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 6 }\n"), HasSubstr("square = \"30 mm\""));
+  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 6, square = \"30 mm\", squares = 4 }\n"), HasSubstr("squares"));
+  EXPECT_THAT(refused("chessboard = { columns = 8, rows = 2, square = \"30 mm\" }\n"), HasSubstr("rows"));
   const std::string board = "chessboard = { columns = 8, rows = 6, square = \"30 mm\" }\n";
-  EXPECT_THAT(refused(board + "aruco = { plane = 3, side = \"5 cm\" }\n"), testing::HasSubstr("one of length, chessboard, points and aruco.plane"));
-  EXPECT_THAT(refused("aruco = { plane = 3 }\n"), testing::HasSubstr("side"));
-  EXPECT_THAT(refused("aruco = { dictionary = \"4x5\" }\n"), testing::HasSubstr("4x4"));
-  EXPECT_THAT(refused("marker = \"aruco\"\n"), testing::HasSubstr("id = 7"));
-  EXPECT_THAT(refused("marker = \"ring\"\nid = 7\n"), testing::HasSubstr("only marker = \"aruco\""));
-  EXPECT_THAT(refused("marker = \"aruco\"\nid = 7\nfields = \"top_first\"\n"), testing::HasSubstr("whole frames"));
-  EXPECT_THAT(refused("[video.points]\na = { pixel = [1, 2], place = [0, 0] }\n"), testing::HasSubstr("four points"));
-  EXPECT_THAT(refused("[video.points]\na = { place = [0, 0] }\n"), testing::HasSubstr("either pixel"));
+  EXPECT_THAT(refused(board + "aruco = { plane = 3, side = \"5 cm\" }\n"), HasSubstr("one of length, chessboard, points and aruco.plane"));
+  EXPECT_THAT(refused("aruco = { plane = 3 }\n"), HasSubstr("side"));
+  EXPECT_THAT(refused("aruco = { dictionary = \"4x5\" }\n"), HasSubstr("4x4"));
+  EXPECT_THAT(refused("marker = \"aruco\"\n"), HasSubstr("id = 7"));
+  EXPECT_THAT(refused("marker = \"ring\"\nid = 7\n"), HasSubstr("only marker = \"aruco\""));
+  EXPECT_THAT(refused("marker = \"aruco\"\nid = 7\nfields = \"top_first\"\n"), HasSubstr("whole frames"));
+  EXPECT_THAT(refused("[video.points]\na = { pixel = [1, 2], place = [0, 0] }\n"), HasSubstr("four points"));
+  EXPECT_THAT(refused("[video.points]\na = { place = [0, 0] }\n"), HasSubstr("either pixel"));
   std::string line = "[video.points]\n";
   for (const char* k : {"1", "2", "3", "5"})
     line += std::string("p") + k + " = { pixel = [" + k + "0, " + k + "5], place = [" + k + ", 2" + k + "] }\n";
-  EXPECT_THAT(refused(line), testing::HasSubstr("on one line"));
+  EXPECT_THAT(refused(line), HasSubstr("on one line"));
 }
 
 TEST_F(EveryKey, OfForceLimitsAndResamplingIsRead) {
@@ -167,8 +167,8 @@ TEST_F(EveryKey, OfTheHoldOfInputsIsReadWhereTheSystemIsAFile) {
   EXPECT_EQ(study.system_hold.at("u").hold, "zero_order");
   EXPECT_EQ(study.system_hold.at("wind").hold, "band_limited");
   EXPECT_THAT(error_of("[system]\nfile = \"model.toml\"\nhold = { u = \"zero\" }\n"),
-              testing::AllOf(testing::HasSubstr("study.toml:3"), testing::HasSubstr("zero_order")));
-  EXPECT_THAT(error_of("[system]\nkind = \"duffing\"\nhold = { u = \"zero_order\" }\n"), testing::HasSubstr("inputs of a declared system (file)"));
+              testing::AllOf(HasSubstr("study.toml:3"), HasSubstr("zero_order")));
+  EXPECT_THAT(error_of("[system]\nkind = \"duffing\"\nhold = { u = \"zero_order\" }\n"), HasSubstr("inputs of a declared system (file)"));
 }
 
 /// "fit" of "fit", "curves" of "curves.NAME".

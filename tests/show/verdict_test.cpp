@@ -653,6 +653,21 @@ TEST(Verdict, OfACurveThatWasRefusedItSaysWhatDecidedAndWhatIsNext) {
   EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
 }
 
+TEST(Verdict, ACurveOfUnknownFormThatWasAddedIsCalledWhatItIsACurveOf) {
+  Case c;
+  c.add_effect();
+  c.discovery = searched({}, SearchOutcome::none_missing, "");
+  Rung& last = c.ladder->rungs.back();
+  last.added = "unknown_variation", last.roles = {{"parameter", "Bl"}, {"with", "x"}};
+  EXPECT_THAT(c.verdict().sentence,
+              testing::StartsWith("A change of Bl that depends on x (unknown_variation, a curve) was missing: with it"));
+  last.added = "unknown_force", last.roles = {{"of", "w"}, {"port", "dw/dt"}};
+  EXPECT_THAT(c.verdict().sentence,
+              testing::StartsWith("A force on dw/dt that depends on w (unknown_force, a curve) was missing: with it"));
+  last.roles.reset();  // of an older file
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("unknown_force was missing"));
+}
+
 TEST(Verdict, AnErrorOfUnknownFormIsNotCalledAForce) {
   Case c;
   c.discovery = searched({candidate("lag", 0.5, false)}, SearchOutcome::unknown_form, "Something is missing that depends on w");

@@ -148,9 +148,9 @@ const Candidate* candidate_to_begin_with(const Discovery& discovery) {
     if (best == nullptr || gain_in_all(c) > gain_in_all(*best)) best = &c;
   }
   if (best == nullptr) return nullptr;
-  const double drop = *best->actual_drop;
+  const double drop = *best->actual_drop, of_curve = discovery.unexplained_effects.empty() ? 2.0 * drop : drop;
   const bool past_a_larger_one = std::any_of(discovery.candidates.begin(), discovery.candidates.end(), [&](const Candidate& c) {
-    return is_tested_curve(c) ? c.score - 2.0 * c.dof > drop : c.actual_drop && *c.actual_drop > 2.0 * drop;
+    return is_tested_curve(c) ? c.score - 2.0 * c.dof > of_curve : c.actual_drop && *c.actual_drop > 2.0 * drop;
   });
   return past_a_larger_one ? nullptr : best;
 }

@@ -128,8 +128,8 @@ struct Discovery {
 
 /// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain
 /// (gain_in_all) of those that act where the model fails, but not a part of what is unexplained (a parameter that changes along a line with
-/// the quantity of which it is found to be a curve). nullptr: there is none, a curve of unknown form explains more, or a refitted
-/// candidate that is refused more than twice as much.
+/// the quantity of which it is found to be a curve). nullptr: there is none, a curve of unknown form explains more (more than twice as
+/// much, where none can be added in its place), or a refitted candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
 
 /// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.

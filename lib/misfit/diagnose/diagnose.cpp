@@ -140,6 +140,8 @@ std::vector<ForceMap> all_maps(const Search& search, const DiagnoseOptions& opti
     map.p_corrected = sidak(map.p_value, static_cast<double>(solved.size()));
     if (map.p_corrected < significant)
       map.sentence = where_it_fails(map.quantity == time_of_day ? beside_other_hours(map) : map, covariance);
+    if (!map.sentence.empty() && !may_be_forced(search.spec, index_of(search.spec.dynamic_ports, map.port)))
+      map.sentence += ", where no force acts: an error of a sensor may look like that";
     maps.push_back(std::move(map));
   }
   std::stable_sort(maps.begin(), maps.end(), [](const ForceMap& a, const ForceMap& b) { return a.p_value < b.p_value; });

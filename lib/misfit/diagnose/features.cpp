@@ -128,6 +128,15 @@ void add_if_visited(Features features, std::vector<Features>& out) {
 
 }  // namespace
 
+bool may_be_forced(const SystemSpec& system, int port) {
+  const PortSpec& spec = system.dynamic_ports[port];
+  const int moved = index_of(system.states, spec.conjugate);
+  const bool has_rate =
+      moved >= 0 && std::any_of(system.states.begin(), system.states.end(), [&](const StateSpec& s) { return s.rate_of == moved; });
+  const auto& forced = system.force_ports;
+  return !has_rate || std::find(forced.begin(), forced.end(), spec.name) != forced.end();
+}
+
 bool lasts_days(const std::vector<double>& t) {
   constexpr double least = 3.0 * seconds_of_a_day;
   return !t.empty() && *std::max_element(t.begin(), t.end()) - *std::min_element(t.begin(), t.end()) >= least;

@@ -17,6 +17,10 @@ struct Features {
   Eigen::MatrixXd f, ahead;    ///< all samples × hats: at the filtered state, and as predicted for the end of the step
 };
 
+/// A force may act on the dynamic port: not on that of a state whose rate is another state, unless the random force does (no force turns a
+/// speed into something else; what seems to is the sensor's).
+[[nodiscard]] bool may_be_forced(const SystemSpec& system, int port);
+
 /// Of recordings of three days and more, whatever they are of: what people do and the sun does recurs every 24 h, and a model without it
 /// blames an input that follows.
 inline constexpr const char* time_of_day = "time of day";

@@ -16,11 +16,7 @@ namespace misfit {
 std::vector<int> ports_of_unknown_curves(const SystemSpec& system) {
   std::vector<int> out;
   for (int p = 0; p < int_size(system.dynamic_ports); ++p) {
-    const int moved = index_of(system.states, system.dynamic_ports[p].conjugate);
-    const bool has_rate =
-        moved >= 0 && std::any_of(system.states.begin(), system.states.end(), [&](const StateSpec& s) { return s.rate_of == moved; });
-    const auto& forced = system.force_ports;
-    if (!has_rate || std::find(forced.begin(), forced.end(), system.dynamic_ports[p].name) != forced.end()) out.push_back(p);
+    if (may_be_forced(system, p)) out.push_back(p);
   }
   return out;
 }

@@ -12,8 +12,7 @@ namespace misfit {
 /// Hats per quantity of the unknown curves.
 inline constexpr int hats_of_unknown_curves = 8;
 
-/// Dynamic ports on which a force of unknown form may act: not those of a state whose rate is another state (no force turns a speed into
-/// something else; what seems to is the sensor's).
+/// Dynamic ports on which a force of unknown form may act (may_be_forced()).
 [[nodiscard]] std::vector<int> ports_of_unknown_curves(const SystemSpec& system);
 
 /// Columns of forces, errors, and of the parameters of a small system.

@@ -434,7 +434,8 @@ class VerdictBuilder {
     clauses.push_back(rest);
     for (std::string& doubt : doubts_in_clauses(*in_.ladder, out_.doubts)) clauses.push_back(std::move(doubt));
     say(kind, fmt::format("{}", fmt::join(clauses, "; ")), next);
-    out_.sentence.replace(0, 1, clauses.front(), 0, 1);  // names of effects keep their small letters
+    const bool begins_with_words = clauses.front().starts_with("a ") || clauses.front().starts_with("an ");
+    if (!begins_with_words) out_.sentence.replace(0, 1, clauses.front(), 0, 1);  // names of effects keep their small letters
   }
 
   const VerdictInput& in_;

@@ -84,6 +84,24 @@ std::size_t effects_added(const Ladder& ladder) {
 
 bool is_of_the_hold(const std::optional<std::string>& also) { return also && also->starts_with(half_a_sample); }
 
+namespace {
+
+/// An effect by its name; a curve of unknown form by what it is.
+std::string rung_in_words(const Rung& rung) {
+  const auto role = [&](const char* name) { return rung.roles && rung.roles->contains(name) ? rung.roles->at(name) : std::string(); };
+  const auto curve = [&](const char* place, const char* of, bool error, bool parameter) {
+    const std::string at = role(place), with = role(of);
+    if (at.empty() || with.empty()) return added_in_words(rung);
+    return fmt::format("{} that depends on {} ({}, a curve)", unexplained_place(at, error, parameter), with, rung.added);
+  };
+  if (rung.added == "unknown_force") return curve("port", "of", false, false);
+  if (rung.added == "unknown_error") return curve("output", "of", true, false);
+  if (rung.added == "unknown_variation") return curve("parameter", "with", false, true);
+  return added_in_words(rung);
+}
+
+}  // namespace
+
 std::string names_added(const Ladder& ladder) {
   std::vector<std::string> names;
   for (const Rung& rung : ladder.rungs) {
@@ -99,7 +117,7 @@ std::vector<std::string> added_in_clauses(const AddedWork& work) {
        {Evidence::needed, Evidence::of_the_hold, Evidence::a_part, Evidence::untested, Evidence::predicts_worse, Evidence::chance}) {
     std::vector<std::string> names;
     for (const Rung& rung : work.ladder.rungs) {
-      if (!rung.added.empty() && evidence_for(rung, work.something_remains) == evidence) names.push_back(added_in_words(rung));
+      if (!rung.added.empty() && evidence_for(rung, work.something_remains) == evidence) names.push_back(rung_in_words(rung));
     }
     if (names.empty()) continue;
     const Words words = evidence == Evidence::needed ? words_of_needed(work) : words_of(evidence);
