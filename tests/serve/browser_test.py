@@ -775,6 +775,7 @@ def somebody_else_saves(page):
 def an_answer_is_lost(page):
     """It is said as long as nobody answers; then the page goes on as it was, with what is typed. A fault of the page is no silence of misfit."""
     type_in(page, "# mine\n")
+    page.wait(lambda: "not saved yet" in page.text("#check"), "it is checked, so that no answer is under way")
     alerts = page.text("#alerts")
     page.js("document.body.dataset.same = 'yes'; window.before = window.fetch; window.fetch = () => Promise.reject(new TypeError('no net'))")
     page.wait(lambda: "does not answer any more" in page.text("#alerts"), "nobody answers")
