@@ -5,8 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "misfit/discover/discover.h"
-#include "tests/model/declared_texts.h"
+#include "tests/discover/found.h"
 
 namespace misfit {
 namespace {
@@ -59,13 +58,9 @@ Signals mirror(unsigned seed) {
 }
 
 TEST(AFrictionThatIsSharperThanTheFilterResolvesWithoutIt, IsFoundAsSharpAsItIs) {
-  const std::vector<Signals> signals = {mirror(8)};  // the estimate points to it
-  const auto systems = registry_with(mirror_text);
-  const ModelRequest request = request_of("text");
-  const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
   DiscoverOptions options;
   options.max_refits = 1;
-  const Discovery found = discover({estimate, request, *systems, signals}, options);
+  const Discovery found = Found(mirror(8), mirror_text).discover_missing(options);
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(first.effect, "coulomb_friction") << found.verdict;

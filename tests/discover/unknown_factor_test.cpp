@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <random>
 
-#include "misfit/discover/discover.h"
+#include "misfit/core/lists.h"
 #include "misfit/discover/unknown_curves.h"
-#include "tests/model/declared_texts.h"
+#include "tests/discover/found.h"
 
 namespace misfit {
 namespace {
@@ -67,35 +66,20 @@ Signals shaken(Damper damper, unsigned seed) {
   return s;
 }
 
-struct Found {
-  std::vector<Signals> signals;  ///< the estimate points to it
-  std::shared_ptr<Registry> systems = registry_with(damper_text);
-  ModelRequest request = request_of("text");
-  FilterEstimate estimate;
-
-  explicit Found(const Signals& recording) : signals{recording}, estimate(estimate_filter(assemble(request, *systems), {}, signals)) {}
-  Found(const Found&) = delete;
-  Found& operator=(const Found&) = delete;
-  Found(Found&&) = delete;
-  Found& operator=(Found&&) = delete;
-  ~Found() = default;
-
-  [[nodiscard]] Discovery discover_missing() const { return discover({estimate, request, *systems, signals}, {}); }
-};
-
 TEST(AFactorThatDependsOnAnotherState, IsAChangeOfUnknownFormOfThatFactor) {
-  const Discovery d = Found(shaken(hard_at_the_ends, 3)).discover_missing();
+  const Discovery d = Found(shaken(hard_at_the_ends, 3), damper_text).discover_missing();
   ASSERT_EQ(d.outcome, SearchOutcome::unknown_form) << d.verdict;
   EXPECT_TRUE(d.unexplained_parameter) << d.verdict;
   EXPECT_EQ(d.unexplained_port, "c");
   EXPECT_EQ(d.unexplained_quantity, "x");
+  EXPECT_THAT(d.unexplained_alike, testing::IsEmpty());
   ASSERT_FALSE(d.unexplained_effects.empty());
   EXPECT_EQ(effect_at(d.unexplained_effects.front().effect, d.unexplained_effects.front().roles),
             "unknown_variation (parameter = c, with = x)");
 }
 
 TEST(AFactorThatDependsOnAnotherState, IsNotFoundWhereItIsConstant) {
-  const Discovery d = Found(shaken(even, 4)).discover_missing();
+  const Discovery d = Found(shaken(even, 4), damper_text).discover_missing();
   EXPECT_EQ(d.outcome, SearchOutcome::none_missing) << d.verdict;
   const auto tested = [&](const char* curve) {
     return std::any_of(d.candidates.begin(), d.candidates.end(), [&](const Candidate& c) { return c.effect == curve; });
@@ -103,6 +87,27 @@ TEST(AFactorThatDependsOnAnotherState, IsNotFoundWhereItIsConstant) {
   EXPECT_TRUE(tested("unknown:c(x)") && tested("unknown:k(v)") && tested("unknown:c(time)"));
   EXPECT_FALSE(tested("unknown:c(v)")) << "it is a force that depends on v";
   EXPECT_FALSE(tested("unknown:weight(x)") || tested("unknown:weight(F)")) << "they are forces that depend on x, on F";
+}
+
+/// The stroke of a damper with a lever of two to one is the same quantity: no data tell whether c depends on the one or the other.
+TEST(AFactorThatDependsOnAnotherState, MayAsWellDependOnWhatIsTheSame) {
+  std::string text = damper_text;
+  text.insert(text.find("[equations]"), "[quantities]\nstroke = { unit = \"m\", formula = \"2*x\" }\n");
+  const Discovery d = Found(shaken(hard_at_the_ends, 3), text).discover_missing();
+  ASSERT_TRUE(d.unexplained_parameter) << d.verdict;
+  const bool first = d.unexplained_quantity == "x";
+  EXPECT_TRUE(first || d.unexplained_quantity == "stroke") << d.unexplained_quantity;
+  EXPECT_THAT(d.unexplained_alike,
+              testing::ElementsAre(first ? "a change of c that depends on stroke" : "a change of c that depends on x"));
+  EXPECT_THAT(d.sentences, testing::Contains(testing::StartsWith("these data cannot distinguish it from a change of c")));
+}
+
+TEST(AForce, MayNotActOnTheRateOfAPosition) {
+  const auto systems = registry_with(damper_text);
+  const auto system = systems->system("text").make({});
+  const SystemSpec& spec = system->spec();
+  EXPECT_FALSE(may_be_forced(spec, index_of(spec.dynamic_ports, "dx/dt")));
+  EXPECT_TRUE(may_be_forced(spec, index_of(spec.dynamic_ports, "dv/dt")));
 }
 
 }  // namespace

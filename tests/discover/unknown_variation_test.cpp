@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <random>
 
-#include "misfit/discover/discover.h"
 #include "misfit/discover/unknown_curves.h"
-#include "tests/model/declared_texts.h"
+#include "tests/discover/found.h"
 
 namespace misfit {
 namespace {
@@ -72,26 +70,8 @@ Signals heated(Transfer transfer, unsigned seed) {
   return s;
 }
 
-struct Found {
-  std::vector<Signals> signals;  ///< the estimate points to it
-  std::shared_ptr<Registry> systems = registry_with(wall_text);
-  ModelRequest request = request_of("text");
-  FilterEstimate estimate;
-
-  explicit Found(const Signals& recording) : signals{recording}, estimate(estimate_filter(assemble(request, *systems), {}, signals)) {}
-  Found(const Found&) = delete;
-  Found& operator=(const Found&) = delete;
-  Found(Found&&) = delete;
-  Found& operator=(Found&&) = delete;
-  ~Found() = default;
-
-  [[nodiscard]] Discovery discover_missing(const DiscoverOptions& options = {}) const {
-    return discover({estimate, request, *systems, signals}, options);
-  }
-};
-
 TEST(AParameterWithAPeak, IsAChangeOfUnknownFormOfThatParameterWithWhatItDependsOn) {
-  const Discovery d = Found(heated(with_a_peak, 5)).discover_missing();
+  const Discovery d = Found(heated(with_a_peak, 5), wall_text).discover_missing();
   ASSERT_EQ(d.outcome, SearchOutcome::unknown_form) << d.verdict;
   EXPECT_TRUE(d.unexplained_parameter) << d.verdict;
   EXPECT_FALSE(d.unexplained_error);
@@ -108,7 +88,7 @@ TEST(AParameterWithAPeak, IsAChangeOfUnknownFormOfThatParameterWithWhatItDepends
 TEST(AParameterWithAPeak, IsFixedWhereItsCurveIsAdded) {
   DiscoverOptions options;
   options.only = "unknown_variation";
-  const Discovery d = Found(heated(with_a_peak, 5)).discover_missing(options);
+  const Discovery d = Found(heated(with_a_peak, 5), wall_text).discover_missing(options);
   ASSERT_FALSE(d.candidates.empty());
   const Candidate& first = d.candidates.front();
   EXPECT_EQ(first.roles, (std::map<std::string, std::string>{{"parameter", "G"}, {"with", "wall"}}));
@@ -116,14 +96,14 @@ TEST(AParameterWithAPeak, IsFixedWhereItsCurveIsAdded) {
 }
 
 TEST(AParameterWithAPeak, IsNotFoundWhereItIsConstant) {
-  const Discovery d = Found(heated(constant, 6)).discover_missing();
+  const Discovery d = Found(heated(constant, 6), wall_text).discover_missing();
   EXPECT_EQ(d.outcome, SearchOutcome::none_missing) << d.verdict;
   EXPECT_TRUE(std::any_of(d.candidates.begin(), d.candidates.end(), [](const Candidate& c) { return c.effect == "unknown:G(wall)"; }))
       << "it was tested";
 }
 
 TEST(AParameterThatGoesUpAndDown, IsNamedWithItsFrequencyAndSize) {
-  const Discovery d = Found(heated(stirred, 7)).discover_missing();
+  const Discovery d = Found(heated(stirred, 7), wall_text).discover_missing();
   ASSERT_FALSE(d.candidates.empty());
   const Candidate& first = d.candidates.front();
   EXPECT_EQ(effect_at(first.effect, first.roles), "periodic_forcing (port = G)") << d.verdict;

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "misfit/discover/discover.h"
-#include "tests/model/declared_texts.h"
+#include "tests/discover/found.h"
 
 namespace misfit {
 namespace {
@@ -64,16 +63,8 @@ Signals reactor(bool varies, unsigned seed) {
   return s;
 }
 
-Discovery found_in(const Signals& recording, const std::string& text = reactor_text) {
-  const std::vector<Signals> signals = {recording};  // the estimate points to it
-  const auto systems = registry_with(text);
-  const ModelRequest request = request_of("text");
-  const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
-  return discover({estimate, request, *systems, signals}, {});
-}
-
 TEST(ARateConstantThatVaries, IsNamedWithWhatItVariesWith) {
-  const Discovery found = found_in(reactor(true, 3));
+  const Discovery found = Found(reactor(true, 3), reactor_text).discover_missing();
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(first.effect, "varying_parameter") << found.verdict;
@@ -87,7 +78,7 @@ TEST(ARateConstantThatVaries, IsNamedWithWhatItVariesWith) {
 }
 
 TEST(ARateConstantThatVaries, IsNotNamedWhereItIsConstant) {
-  const Discovery found = found_in(reactor(false, 4));
+  const Discovery found = Found(reactor(false, 4), reactor_text).discover_missing();
   for (const Candidate& c : found.candidates) EXPECT_FALSE(c.accepted) << c.effect << ": " << c.why;
 }
 
@@ -130,7 +121,7 @@ Signals fuse(unsigned seed) {
 
 /// It multiplies the square of the current in one equation: with the temperature it is no product of temperature and current.
 TEST(AResistanceThatVaries, IsNoProductOfTemperatureAndCurrent) {
-  const Discovery found = found_in(fuse(6), fuse_text);
+  const Discovery found = Found(fuse(6), fuse_text).discover_missing();
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(effect_at(first.effect, first.roles), "varying_parameter (parameter = R0, with = T)") << found.verdict;

@@ -403,7 +403,7 @@ TEST(Verdict, HalfASamplingIntervalIsTheHoldOfAnInput) {
   Case c;
   c.add_effect();
   c.ladder->rungs.back().added = "time_offset";
-  c.ladder->rungs.back().also = std::string(half_a_sample) + " (0.01 s), as …";
+  c.ladder->rungs.back().holds = std::map<std::string, std::string>{{"u", "zero_order"}};
   c.discovery = searched({}, SearchOutcome::none_missing, "");
   EXPECT_THAT(c.verdict().sentence,
               testing::StartsWith("time_offset is half a sampling interval late: it is the hold of an input that is wrong, not the model"));
@@ -414,7 +414,6 @@ TEST(Verdict, AnInputThatIsHeldOtherwiseComesBeforeTheEffectThatItLooksLike) {
   Candidate clock = candidate("time_offset", 1e-9, true);
   clock.parameters = {{"clock_offset", {-0.05, 0.006, "s"}}};
   clock.holds = std::map<std::string, std::string>{{"wind", "zero_order"}};
-  clock.also = std::string(half_a_sample) + " (0.05 s), as …";
   c.discovery = searched({clock}, SearchOutcome::accepted, "Missing: time_offset");
   EXPECT_THAT(
       c.verdict().sentence,

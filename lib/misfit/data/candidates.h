@@ -24,9 +24,6 @@ enum class CandidateFamily { physics, generic, sensor, unknown };
 inline constexpr std::array<const char*, 4> candidate_family_names = {"physics", "generic", "sensor", "unknown"};
 [[nodiscard]] std::string to_string(CandidateFamily family);
 
-/// How Candidate::also begins where an effect is late by half a sampling interval: the hold of an input is wrong then, not the model.
-inline constexpr const char* half_a_sample = "that is half a sampling interval";
-
 /// One thing that the model could lack.
 struct Candidate {
   int rank = 0;        ///< 1 = first
@@ -40,7 +37,7 @@ struct Candidate {
   std::optional<double> actual_drop;                        ///< after refitting; missing: not refitted
   std::optional<double> held_out_gain;                      ///< of the held-out log-likelihood
   std::optional<std::map<std::string, std::string>> holds;  ///< inputs that are rather held otherwise, and how: that is what it looks like
-  std::optional<std::string> also;  ///< other values that explain hardly less, or half_a_sample and what follows from it, in words
+  std::optional<std::string> also;                          ///< other values that explain hardly less, or what `holds` says, in words
   /// What is still significant beside it, the only reason against it: "an unknown surface dv/dt(y, u)".
   std::optional<std::string> remaining;
   double p_value = 1.0;            ///< corrected for cells scanned and families

@@ -37,6 +37,7 @@ struct Rung {
   std::optional<std::vector<std::string>> gained_too_little;  ///< tried beside this model in vain: effect_at()
   std::optional<std::map<std::string, std::string>> why_too_little;  ///< of each of those, with the number that decided: a clause
   std::optional<std::string> remained;                               ///< Candidate::remaining of what was added all the same
+  std::optional<std::map<std::string, std::string>> holds;           ///< Candidate::holds of what was added
   std::optional<std::string> also;                                   ///< other values of what was added that explain hardly less, in words
   std::string note;                                                  ///< in words
 };

@@ -38,7 +38,7 @@ void read_system_option(const Section& system, const std::string& key, Study& st
   } else if (system.is_text(key)) {
     study.system_numbers[key] = study_parts::number_as_written(system, key);
   } else {
-    system.fail(key, "true, false or a number, as 0.5 or \"0.5 m\", is expected");
+    system.fail(key, "true, false or a number, as 0.5 or \"0.5 m\", is expected" + suggest(key, {"kind", "file", "hold"}));
   }
 }
 

@@ -51,7 +51,7 @@ KeyGroup system_group() {
 
 KeyGroup hold_group() {
   return {"system.hold", "What the inputs of a declared system (file) are between their samples.",
-     {{.name = "INPUT", .type = Type::choice, .otherwise = "as the file says", .choices = {"zero_order", "first_order", "band_limited"}, .any = true,
+     {{.name = "INPUT", .type = Type::choice, .otherwise = "as the file says", .choices = hold_names(), .any = true,
        .meaning = "Constant until the next sample, straight to it, or a cubic spline (sampled behind an anti-aliasing filter)."}}};
 }
 
@@ -417,6 +417,8 @@ std::vector<KeyGroup> all_groups() {
 }
 
 }  // namespace
+
+std::vector<std::string> hold_names() { return {"zero_order", "first_order", "band_limited"}; }
 
 std::span<const KeyGroup> study_keys() {
   static const std::vector<KeyGroup> groups = all_groups();

@@ -6,6 +6,9 @@
 
 namespace misfit {
 
+/// What an input may be between its samples: names of Hold.
+[[nodiscard]] std::vector<std::string> hold_names();
+
 /// Every key of study.toml, in the order of the reference (misfit help study): names, types, units, defaults, limits, meaning.
 [[nodiscard]] std::span<const config::KeyGroup> study_keys();
 

@@ -95,4 +95,13 @@ std::vector<AddedForce> added_force_of(const FilterEstimate& estimate, const std
   return out;
 }
 
+std::map<std::string, Estimate> random_force(const FilterEstimate& estimate) {
+  std::map<std::string, Estimate> out;
+  for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
+    const PortSpec& spec = estimate.model.system->spec().dynamic_ports[estimate.forced.force_ports[i]];
+    out[spec.name] = {estimate.noise.force_of(estimate.forced.force_group[i]), 0.0, spec.unit};
+  }
+  return out;
+}
+
 }  // namespace misfit

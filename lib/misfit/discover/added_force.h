@@ -14,4 +14,7 @@ namespace misfit {
 /// same. `strengths`: its parameters among those of estimate.model. Empty where it adds none, as an error of a sensor.
 [[nodiscard]] std::vector<AddedForce> added_force_of(const FilterEstimate& estimate, const std::vector<int>& strengths);
 
+/// Strength of the random force on each port.
+[[nodiscard]] std::map<std::string, Estimate> random_force(const FilterEstimate& estimate);
+
 }  // namespace misfit

@@ -28,16 +28,6 @@
 namespace misfit {
 namespace {
 
-/// Strength on each port.
-std::map<std::string, Estimate> random_force(const FilterEstimate& estimate) {
-  std::map<std::string, Estimate> out;
-  for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
-    const PortSpec& spec = estimate.model.system->spec().dynamic_ports[estimate.forced.force_ports[i]];
-    out[spec.name] = {estimate.noise.force_of(estimate.forced.force_group[i]), 0.0, spec.unit};
-  }
-  return out;
-}
-
 class Search {
  public:
   Search(const FittedStudy& fitted, const DiscoverOptions& options)
@@ -392,14 +382,6 @@ class Search {
     rank_candidates(out_.candidates);
   }
 
-  std::optional<Unexplained> with_what_is_alike(std::optional<Unexplained> unexplained) const {
-    if (!unexplained || !unexplained->curve) return unexplained;
-    for (const UnknownCurve& curve : curves_alike(*unexplained->curve, unknown_, scores(), options_.p_accept))
-      unexplained->alike.push_back(unexplained_place(curve.port, curve.kind == PortKind::sensor, curve.kind == PortKind::quantity) +
-                                   " that depends on " + curve.quantity);
-    return unexplained;
-  }
-
   void describe_search(const std::optional<Unexplained>& unexplained) {
     out_.force = random_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
@@ -408,7 +390,8 @@ class Search {
       curves += (curve.kind == PortKind::sensor ? " error of " : " ") + curve.port + "(" + curve.quantity + ")";
     out_.tried.push_back(curves);
     out_.not_tried = candidates_.not_tried;
-    write_verdict(out_, with_what_is_alike(unexplained), options_.p_accept, options_.calibration != nullptr);
+    write_verdict(out_, with_curves_alike(unexplained, unknown_, scores(), options_.p_accept), options_.p_accept,
+                  options_.calibration != nullptr);
     report_sensor_imitations(screening_, score_, out_);
     add_camera_remarks(options_.calibration, options_.p_accept, out_);
   }

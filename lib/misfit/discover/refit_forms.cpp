@@ -270,10 +270,10 @@ void note_half_a_sample(Refit& out) {
   const char* hold = straight ? "zero_order" : "first_order";
   for (const std::string& input : inputs) out.holds.emplace(input, hold);
   out.also = fmt::format(
-      "{} ({:.4g} s), as an input seems shifted that the model takes as {} between its samples and that is {} there: if {} {}, its hold is "
+      "that is half a sampling interval ({:.4g} s), as an input seems shifted that the model takes as {} between its samples and that is "
+      "{} there: if {} {}, its hold is "
       "\"{}\" ([system] hold of the study, or [inputs] of the system's file), which comes before this effect",
-      half_a_sample, half, straight ? line : constant, straight ? constant : line, join_words(inputs),
-      inputs.size() == 1 ? "is one" : "are such", hold);
+      half, straight ? line : constant, straight ? constant : line, join_words(inputs), inputs.size() == 1 ? "is one" : "are such", hold);
 }
 
 namespace {

@@ -41,9 +41,13 @@ std::vector<int> parameters_of_unknown_curves(const Model& model) {
 
 std::string UnknownCurve::label() const {
   if (!memory.empty()) return memory;
-  if (kind == PortKind::sensor) return "an error of " + port + " that depends on " + quantity;
+  if (kind == PortKind::sensor) return in_words();
   return other.empty() ? "an unknown curve " + port + "(" + quantity + ")"
                        : "an unknown surface " + port + "(" + quantity + ", " + other + ")";
+}
+
+std::string UnknownCurve::in_words() const {
+  return unexplained_place(port, kind == PortKind::sensor, kind == PortKind::quantity) + " that depends on " + quantities();
 }
 
 std::string UnknownCurve::quantities() const { return other.empty() ? quantity : quantity + " and " + other; }

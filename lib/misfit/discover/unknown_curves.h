@@ -44,6 +44,7 @@ struct UnknownCurve {
   /// "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "an error of y that depends on u", "delay (input = u)"
   [[nodiscard]] std::string label() const;
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
+  [[nodiscard]] std::string in_words() const;    ///< "a change of c that depends on x"
 };
 
 /// Of every quantity, and of the past of every input, on every dynamic port, and as errors of every output; of every quantity as changes

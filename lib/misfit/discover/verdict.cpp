@@ -94,6 +94,13 @@ std::optional<std::string> undetermined(const Model& model, const Eigen::MatrixX
 
 }  // namespace
 
+std::optional<Unexplained> with_curves_alike(std::optional<Unexplained> unexplained, const std::vector<UnknownCurve>& all,
+                                             const ScoreWork& work, double p_accept) {
+  if (!unexplained || !unexplained->curve) return unexplained;
+  for (const UnknownCurve& curve : curves_alike(*unexplained->curve, all, work, p_accept)) unexplained->alike.push_back(curve.in_words());
+  return unexplained;
+}
+
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera) {
   if (out.candidates.empty()) {
     out.outcome = SearchOutcome::none_suits;

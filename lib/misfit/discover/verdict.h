@@ -18,6 +18,10 @@ struct Unexplained {
   std::vector<std::string> alike = {};               ///< what these data cannot tell from it, in words
 };
 
+/// The same with what these data cannot tell from it (curves_alike()) among all curves, where it is one of them.
+[[nodiscard]] std::optional<Unexplained> with_curves_alike(std::optional<Unexplained> unexplained, const std::vector<UnknownCurve>& all,
+                                                           const ScoreWork& work, double p_accept);
+
 /// The verdict in one sentence, and what would separate a group; `camera`: the measurements are those of a calibrated one.
 void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained, double p_accept, bool camera);
 

@@ -61,7 +61,7 @@ std::vector<KeyGroup> state_groups() {
 KeyGroup input_group() {
   return {"inputs.NAME", "A measured input.",
      {unit_key(),
-      {.name = "hold", .type = Type::choice, .fallback = "\"first_order\"", .choices = {"zero_order", "first_order", "band_limited"},
+      {.name = "hold", .type = Type::choice, .fallback = "\"first_order\"", .choices = hold_names(),
        .meaning = "Between samples: constant, a straight line, or a smooth curve through them (cubic spline), as of a signal without content "
                   "near half the sampling rate."},
       {.name = "delay", .type = Type::number, .unit = "s", .fallback = "0", .least = 0.0,

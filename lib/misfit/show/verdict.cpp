@@ -14,6 +14,7 @@
 #include "misfit/math/statistics.h"
 #include "misfit/show/error_changes.h"
 #include "misfit/show/rows.h"
+#include "misfit/show/verdict_candidate.h"
 #include "misfit/show/verdict_estimates.h"
 #include "misfit/show/verdict_ladder.h"
 
@@ -88,12 +89,6 @@ class VerdictBuilder {
   }
   [[nodiscard]] std::string command(const std::string& verb, const std::string& effect = "") const {
     return misfit_command(verb, in_.study, effect, in_.out);
-  }
-
-  [[nodiscard]] static std::string at_place(const std::map<std::string, std::string>& roles) {
-    std::string out;
-    for (const std::string& word : words_of_place(roles)) out += " --at " + shell_word(word);
-    return out;
   }
 
   /// Of the last model, or of the study's own where nothing was added.
@@ -248,32 +243,11 @@ class VerdictBuilder {
 
   void missing(const Candidate& best) {
     if (!effects_added_) with_candidate(best);
-    std::string sentence = best.holds ? hold_is_another(best) : is_missing(best);
+    std::string sentence = best.holds ? hold_in_words(best) : missing_in_words(best, effects_added_);
     if (const std::string change = effects_added_ ? change_by_ladder() : ""; !change.empty())
       sentence += "; with " + names_added(*in_.ladder) + " " + change;
     say(best.group.size() > 1 && !best.holds ? VerdictKind::several_possible : VerdictKind::missing, sentence,
         best.holds ? hold_otherwise(*best.holds) : command("add", best.effect));
-  }
-  [[nodiscard]] static std::string with_values(const Candidate& best) {
-    const std::string values = best.parameters.empty() ? "" : ", with " + parameters_in_words(best);
-    return effect_at(best.effect, best.roles) + values + " (" + p_equals(best.p_value) + ")";
-  }
-  [[nodiscard]] std::string is_missing(const Candidate& best) const {
-    const std::string which = best.group.size() > 1
-                                  ? "one of " + join_words(best.group) + " is missing, and these data cannot say which: best fits "
-                              : effects_added_ ? std::string("still missing: ")
-                                               : std::string("missing: ");
-    return which + with_values(best) + (best.also ? "; " + *best.also : "");
-  }
-  [[nodiscard]] static std::string hold_is_another(const Candidate& best) {
-    std::vector<std::string> inputs;
-    for (const auto& [input, hold] : *best.holds) inputs.push_back(input);
-    const bool one = inputs.size() == 1, held = best.holds->begin()->second == "zero_order";
-    return fmt::format(
-        "between {} samples {} {} {}, where the model takes {} as {}: half a sampling interval is what {} needs to make up "
-        "for that; the right hold comes first, since what is found beside a wrong one may stand for it",
-        one ? "its" : "their", join_words(inputs), one ? "is rather" : "are rather", held ? "constant" : "straight", one ? "it" : "them",
-        held ? "a straight line" : "constant", with_values(best));
   }
   /// The command that sets what inputs are between their samples, and runs the study again.
   [[nodiscard]] std::string hold_otherwise(const std::map<std::string, std::string>& holds) const {
@@ -326,21 +300,9 @@ class VerdictBuilder {
     return out;
   }
 
-  /// " X can be added …"; empty where what is held out has spoken against it.
-  [[nodiscard]] static std::string by_hand(const Candidate& rejected) {
-    if (rejected.why.find("the held-out log-likelihood") != std::string::npos) return "";
-    return effect_at(rejected.effect, rejected.roles) + " can be added by hand, to compare the errors before and after";
-  }
   [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
     if (by_hand(rejected).empty()) return command("open");
     return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
-  }
-
-  /// The first candidate, where a lack of fit that it leaves is all that speaks against it; nullptr: it is another.
-  [[nodiscard]] static const Candidate* nearest_of_library(const Discovery& d) {
-    if (d.candidates.empty()) return nullptr;
-    const Candidate& first = d.candidates.front();
-    return first.remaining && first.actual_drop ? &first : nullptr;
   }
 
   /// Of the last model; nullptr: what it lacks is there for longer.

@@ -11,9 +11,6 @@ namespace misfit {
 
 // What a verdict says of a ladder.
 
-/// It is late by half a sampling interval: Candidate::also, Rung::also.
-[[nodiscard]] bool is_of_the_hold(const std::optional<std::string>& also);
-
 /// "backlash and coulomb_friction": all that was added.
 [[nodiscard]] std::string names_added(const Ladder& ladder);
 

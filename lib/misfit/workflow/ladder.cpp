@@ -329,6 +329,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from) append_note(rung.note, taken_over_in_words(from->fixed_in_model));
     if (from) rung.roles = from->roles;
     if (from) rung.also = from->also;
+    if (from) rung.holds = from->holds;
     if (from) rung.remained = from->remaining;
     if (const std::string kept = from ? not_estimated_in_words(*from, work->fit) : ""; !kept.empty()) {
       rung.kept = kept;
