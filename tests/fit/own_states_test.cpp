@@ -103,6 +103,16 @@ TEST(OwnStates, OfPlayAreUncertainByNoMoreThanTheyMove) {
   EXPECT_LT(own.z.cwiseAbs().maxCoeff(), 1.0) << "the swing less the play";
 }
 
+TEST(OwnStates, ThatOnlyAddUpAreKnownWhereTheyBegin) {
+  const Swing swing(testing_models::effect("turning_ripple", {{"speed", "v"}, {"port", "torque"}}));
+  const OwnStates own = swing.own();
+  EXPECT_EQ(own.start[0], 0.0);
+  EXPECT_EQ(own.sigma[0], 0.0);
+  const double first = swing.first_time();
+  for (Eigen::Index i = 10; i < own.z.rows() - 10; i += 13)
+    EXPECT_NEAR(own.z(i, 0), Swing::angle(swing.signals.t[i]) - Swing::angle(first), 0.05) << "the way that v goes";
+}
+
 /// A surface that follows a square wave of 10 deg at 60 deg/s and is 5 deg away from its command when the recording begins.
 TEST(OwnStates, OfALimitedRateBeginWhereTheMotionIsNotAtTheCommand) {
   constexpr double step = 0.02, limit = 60.0 * std::numbers::pi / 180.0, command = 10.0 * std::numbers::pi / 180.0;

@@ -54,26 +54,43 @@ cold = "over*(warm - cold)"
 warm = { unit = "K", noise = 0.1 }
 )toml";
 
+/// A motor of which the speed alone is a state.
+const std::string motor = R"toml(
+[states]
+w = { unit = "rad/s" }
+[parameters]
+braking = { unit = "1/s", value = 0.1, free = true }
+[equations]
+w = "-braking*w"
+[outputs]
+w = { unit = "rad/s", noise = 0.1 }
+)toml";
+
+/// Alone in the system of the request.
+void try_in(const ModelRequest& request, const Registry& systems, const std::string& key, ModelsWith& out) {
+  ModelRequest alone = request;
+  alone.effects = {effect(key)};
+  alone.effects.front().roles = roles_without_default(registry().effect(key).spec(), request, systems);
+  for (const auto& c : registry().effect(key).spec().coefficients) {
+    if (c.shared) alone.effects.push_back(effect(owner_of(c.name)));
+  }
+  alone.curves.clear();
+  for (const auto& [name, of] : curves_without_knots(alone, systems)) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
+  try {
+    out.models.push_back(assemble(alone, systems));
+  } catch (const InputError& error) {  // does not suit this system
+    out.refusals += "\n  " + request.system + ": " + error.what();
+  }
+}
+
 ModelsWith models_with(const std::string& key) {
   ModelsWith out;
-  static const std::shared_ptr<Registry> systems = testing_models::registry_with(two_bodies);
-  const auto& coefficients = registry().effect(key).spec().coefficients;
+  static const std::shared_ptr<Registry> with_bodies = testing_models::registry_with(two_bodies),
+                                         with_motor = testing_models::registry_with(motor);
   for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), tanks({}), declared("pendulum", {}),
-                              declared("cascaded_tanks", {}), declared("duffing", {}), declared("text", {})}) {
-    ModelRequest alone = request;
-    alone.effects = {effect(key)};
-    alone.effects.front().roles = roles_without_default(registry().effect(key).spec(), request, *systems);
-    for (const auto& c : coefficients) {
-      if (c.shared) alone.effects.push_back(effect(owner_of(c.name)));
-    }
-    alone.curves.clear();
-    for (const auto& [name, of] : curves_without_knots(alone, *systems)) alone.curves[name] = {of, {0.1, 0.2}, {}, {}};
-    try {
-      out.models.push_back(assemble(alone, *systems));
-    } catch (const InputError& error) {  // does not suit this system
-      out.refusals += "\n  " + request.system + ": " + error.what();
-    }
-  }
+                              declared("cascaded_tanks", {}), declared("duffing", {}), declared("text", {})})
+    try_in(request, *with_bodies, key, out);
+  try_in(declared("text", {}), *with_motor, key, out);
   return out;
 }
 

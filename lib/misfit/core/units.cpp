@@ -148,6 +148,9 @@ constexpr Known known_units[] = {
     {"mmol", 1e-3, none, false, "mol"},
     {"umol", 1e-6, none, false, "mol"},
     {"kmol", 1e3, none, false, "mol"},
+    {"U", 1.0, none},  // of an enzyme or a hormone: what acts as one unit of it
+    {"mU", 1e-3, none, false, "U"},
+    {"uU", 1e-6, none, false, "U"},
     {"px", 1.0, pixel},
     {"pix", 1.0, pixel},
     {"pixel", 1.0, pixel},

@@ -136,10 +136,12 @@ struct Imitation {
   UnknownCurve remaining;
 };
 
-/// The accepted candidate, or the end of the list; and the second effect beside which it holds, if it does not by itself.
+/// The accepted candidate, or the end of the list; and the second effect beside which it holds, if it does not by itself. None where a
+/// force of unknown form explains more: that one.
 struct Choice {
   Place at;
   std::optional<Pair> pair = std::nullopt;
+  std::optional<UnknownCurve> larger = std::nullopt;
 };
 
 /// Dynamics or a nonlinearity of a sensor (lag, delay, saturation) that nothing is known of beforehand: it can imitate much of what the
@@ -186,6 +188,37 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   return {ranked.end()};
 }
 
+/// A curve of unknown form that promises more than the choice did where all were screened, and of which more than half is left with the
+/// choice in the model: whatever the choice is, it is not that. A true effect leaves nothing of the curves that it showed in.
+std::optional<UnknownCurve> larger_unknown(const RankedCandidate& choice, const std::vector<UnknownCurve>& unknown,
+                                           const SearchContext& context) {
+  constexpr double most_left = 0.5;
+  const auto worth = [](const UnknownCurve& c) { return c.result.chi2 - 2.0 * c.result.dof; };
+  std::vector<const UnknownCurve*> larger;
+  for (const UnknownCurve& curve : unknown) {
+    const bool significant = sidak(curve.p_value, context.families) < context.options.p_accept;
+    if (significant && worth(curve) > choice.screening->result.chi2) larger.push_back(&curve);
+  }
+  if (larger.empty()) return std::nullopt;
+  const FilterEstimate& with = choice.refit->estimate;
+  const ScoreTest score(with);
+  const ForceSensitivity force = sensitivity_of_forces_and_parameters(with);
+  const std::vector<UnknownCurve> after = unknown_curves({.estimate = with,
+                                                          .score = score,
+                                                          .force = force,
+                                                          .threads = context.options.threads,
+                                                          .calibrated = context.options.calibration != nullptr});
+  std::sort(larger.begin(), larger.end(), [](const UnknownCurve* a, const UnknownCurve* b) { return a->order() < b->order(); });
+  for (const UnknownCurve* curve : larger) {
+    const auto same = std::find_if(after.begin(), after.end(), [&](const UnknownCurve& c) {
+      return c.kind == curve->kind && c.port == curve->port && c.quantity == curve->quantity;
+    });
+    const bool left = same != after.end() && sidak(same->p_value, static_cast<double>(after.size())) < context.options.p_accept;
+    if (left && worth(*same) > most_left * worth(*curve)) return *curve;
+  }
+  return std::nullopt;
+}
+
 /// Step 5: a choice is not made past one that explains more than twice as much. Such an imitation is chosen in its place if a second effect
 /// explains what it leaves; for others, one that is refused, and an unknown form, nothing is.
 Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Imitation>& imitations,
@@ -210,7 +243,14 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
   }
   for (const UnknownCurve& curve : unknown) {
     if (!(curve.result.chi2 - 2.0 * curve.result.dof > least)) continue;
-    return past(curve.label(), "no known effect describes the larger one");
+    Choice none = past(curve.label(), "no known effect describes the larger one");
+    none.larger = curve;
+    return none;
+  }
+  if (auto larger = larger_unknown(*choice.at, unknown, context)) {
+    choice.at->candidate.why = "explains less than " + larger->label() +
+                               " would, of which more than half is left with it in the model; no known effect describes the larger one";
+    return {.at = ranked.end(), .larger = std::move(larger)};
   }
   return choice;
 }
@@ -276,23 +316,28 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
 }
 
 /// Step 9: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
-/// that candidate is more significant than any unknown curve, else the most significant unknown curve.
+/// that candidate is more significant than any unknown curve, else the most significant unknown curve; first of all the `larger` one past
+/// which no choice was made.
 std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>& ranked, const std::optional<UnknownCurve>& left,
-                                             const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
+                                             const std::optional<UnknownCurve>& larger, const std::vector<UnknownCurve>& unknown,
+                                             const SearchContext& context) {
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
   const auto unexplained = [&](const UnknownCurve& form, std::string quantities, double p) -> Unexplained {
     const SystemSpec& system = context.estimate.model.system->spec();
     return {form.kind, form.port, std::move(quantities), p, effects_of_unknown_form(form, unknown, system, context.registry)};
   };
+  const auto of_curve = [&](const UnknownCurve& curve) {
+    Unexplained out = unexplained(curve, curve.quantity, sidak(curve.p_value, context.families));
+    out.curve = curve;
+    return out;
+  };
+  if (larger) return of_curve(*larger);
   const bool any = best != unknown.end();
   const bool front_better = any && !ranked.empty() && !ranked.front().degenerate && ranked.front().log_p < best->log_p;
   if (left && (!any || front_better)) return unexplained(*left, left->quantities(), left->p_value);
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
-  const double p = sidak(best->p_value, context.families);
-  if (!(p < context.options.p_accept)) return std::nullopt;
-  Unexplained out = unexplained(*best, best->quantity, p);
-  out.curve = *best;
-  return out;
+  if (!(sidak(best->p_value, context.families) < context.options.p_accept)) return std::nullopt;
+  return of_curve(*best);
 }
 
 }  // namespace
@@ -310,7 +355,7 @@ std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, con
   find_groups(ranked, context);
   if (accepted) explain_others(ranked);
   if (accepted) return std::nullopt;
-  return unexplained_force(ranked, remaining_with_best(ranked, imitations, context), unknown, context);
+  return unexplained_force(ranked, remaining_with_best(ranked, imitations, context), choice.larger, unknown, context);
 }
 
 }  // namespace misfit

@@ -8,6 +8,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/units.h"
 #include "misfit/model/declared.h"
+#include "misfit/model/rate_unit.h"
 
 namespace misfit {
 namespace {
@@ -21,18 +22,8 @@ const StateSpec* state_called(const SystemSpec& system, const std::string& name)
   return found == system.states.end() ? nullptr : &*found;
 }
 
-/// Its unit is one per time: rad/s, m/s, kg/s, m^3/s, Hz, but neither m/s^2 nor V.
-bool is_rate(const std::string& unit) {
-  constexpr std::array<std::string_view, 4> times = {"s", "ms", "min", "h"};
-  double power = 0.0;
-  for (const auto& [symbol, exponent] : unit_symbols(unit)) {
-    if (symbol == "Hz") power -= exponent;
-    if (std::find(times.begin(), times.end(), symbol) != times.end()) power += exponent;
-  }
-  return power == -1.0;
-}
-
-/// Roles that the conjugate of a port plays: a state, or a quantity that a declared port calls its rate.
+/// Roles that the conjugate of a port plays: a state, or a quantity that a declared port calls its rate. `speed` is a rate of which nothing
+/// is the displacement.
 Roles roles_of_conjugate(const SystemSpec& system, const std::string& name) {
   const StateSpec* state = state_called(system, name);
   const auto quantity =
@@ -41,12 +32,11 @@ Roles roles_of_conjugate(const SystemSpec& system, const std::string& name) {
     const std::string& moved = system.states[state->rate_of].name;
     return {{"rate", name}, {"displacement", moved}, {"level", moved}};
   }
-  if (state != nullptr) {
-    return {{"level", name}, {is_rate(state->unit) ? "rate" : "content", name}};
-  }
+  if (state != nullptr && is_per_time(state->unit)) return {{"level", name}, {"rate", name}, {"speed", name}};
+  if (state != nullptr) return {{"level", name}, {"content", name}};
   if (quantity == system.quantities.end()) return {};
   if (!quantity->rate_of.empty()) return {{"rate", name}, {"displacement", quantity->rate_of}, {"level", quantity->rate_of}};
-  return is_rate(quantity->unit) ? Roles{{"rate", name}} : Roles{};
+  return is_per_time(quantity->unit) ? Roles{{"rate", name}} : Roles{};
 }
 
 /// It has a default for `signal`: its way of saying that generic effects make sense at places of its own.
@@ -77,7 +67,8 @@ std::optional<Roles> roles_at(const EffectSpec& effect, const Roles& place) {
         out[role.name] = found->second;
         continue;
       }
-      constexpr std::array<std::string_view, 8> kinds = {"rate", "displacement", "level", "content", "other", "factor", "port", "to_port"};
+      constexpr std::array<std::string_view, 9> kinds = {"rate",  "displacement", "level", "content", "speed",
+                                                         "other", "factor",       "port",  "to_port"};
       if (!role.optional && std::find(kinds.begin(), kinds.end(), role.name) != kinds.end()) return std::nullopt;
     }
   }

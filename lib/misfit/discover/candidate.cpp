@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/core/display.h"
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
 
@@ -49,9 +50,15 @@ std::string what_was_tried(const ScreeningResult& s) {
   const FrequencyGrid& scanned = s.frequencies;
   if (scanned.count == 0) return out;
   const double last = scanned.at(scanned.count - 1);
+  const bool cut_short = last + 2.0 * scanned.step < scanned.wanted;
+  if (s.candidate_model->recurs_along) {
+    const std::string unit = s.candidate_model->model.parameters[s.candidate_model->frequency].unit;
+    out += ", every " + in_display_unit(1.0 / last, unit) + " to " + in_display_unit(1.0 / scanned.first, unit);
+    if (cut_short) out += ", not down to " + in_display_unit(1.0 / scanned.wanted, unit) + ": too many samples";
+    return out;
+  }
   out += ", " + format_value(scanned.first) + " to " + format_value(last) + " Hz";
-  if (last + 2.0 * scanned.step < scanned.wanted)
-    out += ", not up to " + format_value(scanned.wanted) + " Hz: too many unevenly spaced samples";
+  if (cut_short) out += ", not up to " + format_value(scanned.wanted) + " Hz: too many unevenly spaced samples";
   return out;
 }
 

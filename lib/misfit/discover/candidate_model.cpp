@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
@@ -116,6 +117,17 @@ void bound_as_candidate(const CoefficientSpec& c, double step, Parameter& p) {
   p.upper = std::min(p.upper, c.steps_as_candidate * step);
 }
 
+/// What ScanSpec::over says of something that recurs: "displacement", or "speed dt" of its integral.
+CandidateModel::Way way_of(const BoundEffect& bound, const ScanSpec& scan) {
+  constexpr std::string_view integral = " dt";
+  std::string_view role = scan.over;
+  const bool integrated = role.ends_with(integral);
+  if (integrated) role.remove_suffix(integral.size());
+  const auto& quantities = bound.effect->spec().quantities;
+  const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const Role& r) { return role == r.name; });
+  return {bound.quantities[found - quantities.begin()], integrated};
+}
+
 void fill(const Effect& effect, const Calibration* calibration, const OperatingRange& operating_range, CandidateModel& out) {
   const BoundEffect& bound = out.model.effects.back();
   const auto& coefficients = effect.spec().coefficients;
@@ -140,6 +152,7 @@ void fill(const Effect& effect, const Calibration* calibration, const OperatingR
       out.frequency = parameter;
       out.frequency_from = coefficients[c].scan.from;
       out.frequency_to = coefficients[c].scan.to;
+      if (!coefficients[c].scan.is_in_time()) out.recurs_along = way_of(bound, coefficients[c].scan);
     }
   }
   out.cells = {{}};
@@ -252,26 +265,6 @@ void add_not_tried(NotTried added, std::vector<NotTried>& list) {
 }
 
 }  // namespace
-
-bool has_linear_memory(const Effect& effect) {
-  const std::size_t states = effect.spec().states.size(), ports = effect.spec().ports.size();
-  for (const Example& example : effect.examples()) {
-    const auto drift = [&](std::size_t moved, double by) {
-      std::vector<double> z = example.states, out(ports + states, 0.0);
-      z[moved] += by;
-      effect.evaluate({example.quantities.data(), example.coefficients.data(), z.data(), example.constants.data(), example.t}, out.data());
-      return std::vector<double>(out.begin() + ports, out.end());
-    };
-    for (std::size_t z = 0; z < states; ++z) {
-      const std::vector<double> at = drift(z, 0.0), ahead = drift(z, 0.7), behind = drift(z, -0.7);
-      for (std::size_t i = 0; i < states; ++i) {
-        constexpr double rounding = 1e-9;
-        if (std::abs(ahead[i] - 2.0 * at[i] + behind[i]) > rounding * (std::abs(ahead[i]) + std::abs(behind[i]))) return false;
-      }
-    }
-  }
-  return states > 0;
-}
 
 std::vector<std::string> names_of_ports(const SystemSpec& system, const BoundEffect& effect) {
   std::vector<std::string> out;

@@ -23,6 +23,13 @@ struct CandidateModel {
   std::vector<std::vector<double>> cells;    ///< at least one (empty where nothing is scanned)
   int frequency = -1;                        ///< shape that is a frequency to be scanned finely
   double frequency_from = 0.0, frequency_to = 0.0;
+  /// Where `frequency` is the way after which something recurs (ScanSpec::is_in_time() is false): of which quantity, or its integral.
+  /// frequency_from and frequency_to are then numbers of periods.
+  struct Way {
+    int quantity = -1;
+    bool integrated = false;
+  };
+  std::optional<Way> recurs_along;
   ColumnPriors priors;  ///< of the strengths
   bool has_priors = false;
   std::vector<int> ports;  ///< dynamic ports it writes
@@ -30,9 +37,6 @@ struct CandidateModel {
   std::vector<int> quantities;  ///< of the system that it reads; kTime for the time of the recording
   bool lags = false;            ///< it has own states with linear dynamics, or reads an input's past: a lag, a delay
 };
-
-/// Has it own states whose drift is linear in them, as those of lags, in its examples?
-[[nodiscard]] bool has_linear_memory(const Effect& effect);
 
 /// Stands for the time of the recording among indices of quantities, as in diagnose/features.h.
 inline constexpr int kTime = -1;

@@ -371,8 +371,10 @@ class Search {
     for (auto& e : ranked_) {
       const std::string p = "family-wise " + p_equals(e.candidate.p_value);
       if (e.candidate.why.empty()) {
-        e.candidate.why = e.candidate.p_value < options_.p_accept ? p + ", not refitted: tested again with the best in the model"
-                                                                  : "not significant: " + p;
+        const bool significant = e.candidate.p_value < options_.p_accept;
+        e.candidate.why = !significant ? "not significant: " + p
+                          : e.refit    ? p + ", behind one that is not accepted"
+                                       : p + ", not refitted: tested again with the best in the model";
       }
       out_.candidates.push_back(e.candidate);
       if (e.refit) out_.candidates.back().added = added_force_of(e.refit->estimate, e.screening->candidate_model->strengths);

@@ -12,6 +12,7 @@
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
+#include "misfit/model/memory.h"
 
 namespace misfit {
 namespace {

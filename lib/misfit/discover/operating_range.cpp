@@ -155,7 +155,7 @@ double OperatingRange::narrowest(int quantity) const {
 
 std::optional<OperatingRange::Range> OperatingRange::range_of_edge(const BoundEffect& effect, std::size_t coefficient) const {
   const ScanSpec& scan = effect.effect->spec().coefficients[coefficient].scan;
-  return scanned_size(scan).kind == ScannedSize::Kind::range ? range(scanned_quantity(effect, scan)) : std::nullopt;
+  return scanned_size(scan).kind == ScannedSize::Kind::range && !scan.is_frequency() ? range(scanned_quantity(effect, scan)) : std::nullopt;
 }
 
 double OperatingRange::lower_bound(const BoundEffect& effect, std::size_t coefficient) const {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "misfit/core/lists.h"
+#include "misfit/discover/wave_scan.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/math/statistics.h"
 
@@ -93,6 +94,8 @@ void refine_cell(const FilterEstimate& estimate, const ScoreTest& score, Screeni
   }
 }
 
+constexpr std::size_t most_lines = 8;  // of a scan, that are tested exactly
+
 /// Of the ports that an effect acts on: dynamic ones, or parameters.
 std::vector<Eigen::VectorXd> scores_of_steps(const BoundEffect& effect, const ForceSensitivity& force) {
   std::vector<Eigen::VectorXd> out;
@@ -103,9 +106,23 @@ std::vector<Eigen::VectorXd> scores_of_steps(const BoundEffect& effect, const Fo
   return out;
 }
 
+/// Spacings whose waves in the score of the force steps stand out most.
+std::vector<double> spacing_peaks(const FilterEstimate& estimate, const CandidateModel& candidate_model, const ForceSensitivity& force,
+                                  FrequencyGrid& grid) {
+  const auto& [quantity, integrated] = *candidate_model.recurs_along;
+  const std::vector<Eigen::VectorXd> scores = scores_of_steps(candidate_model.model.effects.back(), force);
+  const Course course = course_of(estimate, force, quantity, integrated);
+  grid = wave_grid(course, candidate_model.frequency_from, candidate_model.frequency_to, scores.size());
+  std::vector<double> power(grid.count, 0.0), out;
+  for (const Eigen::VectorXd& score : scores) add_over_background(wave_power(score, course, grid), power);
+  for (const std::size_t f : strongest_lines(power, most_lines)) out.push_back(1.0 / grid.at(f));
+  return out;
+}
+
 /// Frequencies whose line in the score of the force steps stands out most.
 std::vector<double> frequency_peaks(const FilterEstimate& estimate, const CandidateModel& candidate_model, const ForceSensitivity& force,
                                     FrequencyGrid& grid) {
+  if (candidate_model.recurs_along) return spacing_peaks(estimate, candidate_model, force, grid);
   SampleTimes times;
   for (std::size_t e = 0, from = 0; e < estimate.traces.size(); from += estimate.traces[e++].samples) {
     const auto first = force.times().begin() + from;
@@ -115,9 +132,8 @@ std::vector<double> frequency_peaks(const FilterEstimate& estimate, const Candid
   grid = frequency_grid(times, candidate_model.frequency_from, candidate_model.frequency_to, scores.size());
   std::vector<double> power(grid.count, 0.0);
   for (const Eigen::VectorXd& score : scores) add_over_background(periodogram(score, times, grid), power);
-  constexpr std::size_t most = 8;
   std::vector<double> out;
-  for (const std::size_t f : strongest_lines(power, most)) out.push_back(grid.at(f));
+  for (const std::size_t f : strongest_lines(power, most_lines)) out.push_back(grid.at(f));
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "misfit/model/evaluator.h"
+#include "misfit/model/memory.h"
 #include "misfit/sim/trajectory.h"
 
 namespace misfit {
@@ -60,8 +61,13 @@ class Along {
     for (const BoundEffect& effect : model_.effects) {
       const EffectSpec& spec = effect.effect->spec();
       const auto size = std::ssize(spec.states);
-      if (size > 0 && !spec.quantities.empty())  // what reads nothing (a random force) remembers nothing of the motion
-        memories_.push_back({system + effect.first_state, Eigen::MatrixXd::Zero(size, size), RowMatrix::Zero(states_.x.rows(), size), {}});
+      if (size == 0 || spec.quantities.empty()) continue;  // what reads nothing (a random force) remembers nothing of the motion
+      const Eigen::Index first = system + effect.first_state;
+      if (only_adds_up(*effect.effect)) {
+        counters_.push_back({first, size});
+      } else {
+        memories_.push_back({first, Eigen::MatrixXd::Zero(size, size), RowMatrix::Zero(states_.x.rows(), size), {}});
+      }
     }
   }
 
@@ -88,8 +94,10 @@ class Along {
   [[nodiscard]] const Eigen::VectorXd& at_rest() const { return own_; }
   /// Own states of effects whose dynamics are not linear, as memories() found.
   [[nodiscard]] const std::vector<Block>& nonlinear() const { return nonlinear_; }
+  /// Of those that only add up what they read: they begin where the effect says.
+  [[nodiscard]] const std::vector<Block>& counters() const { return counters_; }
 
-  /// Own states where the nonlinear ones, begun as `start` has them (all own states), follow the motion, and the others stay: from sample
+  /// Own states where these two, begun as `start` has them (all own states), follow the motion, and the others stay: from sample
   /// to sample two exponential Euler steps (Hochbruck and Ostermann 2010, exponential Rosenbrock-Euler), each with the motion and the
   /// inputs of its middle. They stay while the motion is not known. NaN where they diverge.
   [[nodiscard]] RowMatrix followed(const Eigen::VectorXd& start) {
@@ -117,7 +125,9 @@ class Along {
     at_.head(system) = ((1.0 - share) * states_.x.row(sample).head(system) + share * states_.x.row(sample + 1).head(system)).transpose();
     const std::vector<double> u = inputs_within(inputs_, sample, share, length);
     linearise({u.data(), &inputs_.recorded}, signals_.t[sample] + share * length);
-    for (const Block& block : nonlinear_) at_.segment(block.first, block.size) += increment(block, 0.5 * length);
+    for (const auto* blocks : {&nonlinear_, &counters_}) {
+      for (const Block& block : *blocks) at_.segment(block.first, block.size) += increment(block, 0.5 * length);
+    }
   }
 
   /// h phi_1(A h) z': the last column of the exponential of [A z'; 0 0] h.
@@ -157,7 +167,7 @@ class Along {
   Slots slots_;
   std::vector<double> dx_, D_;
   std::vector<Memory> memories_;
-  std::vector<Block> nonlinear_;
+  std::vector<Block> nonlinear_, counters_;
 };
 
 /// d' = A d - r' from sample to sample; at rest again after samples that are not known.
@@ -289,25 +299,37 @@ Beginning beginning(const Recording& recording, const std::vector<Eigen::Index>&
   return {mean.transpose() + coefficients->transpose() * at, largest(departures - known * *coefficients)};
 }
 
-/// Memories that are not linear, written into their columns.
-void follow(Along& along, const Recording& recording, OwnStates& out) {
+/// Where memories that are not linear begin, and how uncertain that is. False: not to be told.
+bool begin_nonlinear(Along& along, const Recording& recording, OwnStates& out) {
+  if (along.nonlinear().empty()) return true;
   const std::vector<Eigen::Index> samples = later_half(recording);
-  if (along.nonlinear().empty() || samples.empty()) return;
+  if (samples.empty()) return false;
   const RowMatrix begun_at_rest = along.followed(out.start);
   for (const Block& block : along.nonlinear()) {
     const Eigen::Index at = block.first - recording.model.system_states();
     const RowMatrix values = begun_at_rest(samples, Eigen::seqN(at, block.size));
-    if (!values.allFinite()) return;
+    if (!values.allFinite()) return false;
     const Beginning begun = beginning(recording, samples, values);
     const Eigen::VectorXd least = values.colwise().minCoeff().transpose(), largest = values.colwise().maxCoeff().transpose();
     out.start.segment(at, block.size) = begun.start.cwiseMax(least).cwiseMin(largest);  // no extrapolation
     out.sigma.segment(at, block.size) = begun.sigma.cwiseMin(largest - least);
   }
+  return true;
+}
+
+/// Memories that are not linear, and what counts from its beginning, written into their columns.
+void follow(Along& along, const Recording& recording, OwnStates& out) {
+  if (along.nonlinear().empty() && along.counters().empty()) return;
+  const bool begun = begin_nonlinear(along, recording, out);
   const RowMatrix z = along.followed(out.start);
-  for (const Block& block : along.nonlinear()) {
-    const Eigen::Index at = block.first - recording.model.system_states();
-    if (z.middleCols(at, block.size).allFinite()) out.z.middleCols(at, block.size) = z.middleCols(at, block.size);
-  }
+  const auto write = [&](const std::vector<Block>& blocks) {
+    for (const Block& block : blocks) {
+      const Eigen::Index at = block.first - recording.model.system_states();
+      if (z.middleCols(at, block.size).allFinite()) out.z.middleCols(at, block.size) = z.middleCols(at, block.size);
+    }
+  };
+  if (begun) write(along.nonlinear());
+  write(along.counters());
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ struct OwnStates {
 /// are now. What the memory follows may depend on a state that no channel shows, whose start is not known: dr/dx = -A^-1 db/dx.
 /// Memories that are not linear (a limited rate, play inside its clearance) are integrated along the same states; that of the first sample
 /// is the least-squares prediction, too, learnt from the later half of the recording, as uncertain as it errs there at most, within
-/// what it visits. Forces are at rest (set_own_states_at_rest()) and taken as known. Of `states` only those of the system are read.
+/// what it visits. What only adds up (z' does not depend on z: an angle turned) begins where its effect says, and is known there. Forces
+/// are at rest (set_own_states_at_rest()) and taken as known. Of `states` only those of the system are read.
 [[nodiscard]] OwnStates own_states_along(const Model& model, const Signals& signals, const ReconstructedStates& states);
 
 }  // namespace misfit

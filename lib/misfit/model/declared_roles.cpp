@@ -3,6 +3,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/core/units.h"
 #include "misfit/model/declared_system.h"
+#include "misfit/model/rate_unit.h"
 
 namespace misfit::declared {
 namespace {
@@ -52,6 +53,7 @@ class Roles {
     if (level >= 0 || d_.roles->has("rate")) s.roles["rate"] = moving;
     s.roles["level"] = role("level", level < 0 ? moving : s.states[level].name, quantities);
     if (level >= 0) s.roles["displacement"] = s.roles["level"];
+    if (level < 0 && is_per_time(s.quantities[index_of(s.quantities, moving)].unit)) s.roles["speed"] = moving;
     s.roles["factor"] = moving;
     if (level < 0 || d_.roles->has("content")) s.roles["content"] = role("content", moving, quantities);
     set_other_level();

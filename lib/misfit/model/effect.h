@@ -63,7 +63,7 @@ struct Role {
 struct ScanSpec {
   double from = 0.0, to = 0.0;  ///< [unit], or shares of what `over` names
   int count =
-      0;  ///< values, ends included; −1: a frequency [Hz], steps of 1/(4T); 0: not scanned: allowed for fixed and shared shapes only
+      0;  ///< values, ends included; −1: a frequency or a spacing, is_frequency(); 0: not scanned: allowed for fixed and shared shapes only
   /// What `from` and `to` are shares of, where sizes are not known beforehand. "level" (a role): of its operating range, 0 its lower, 1 its
   /// upper end; in equal ratios "|level|": of its largest size, "|level|/step": of that per sampling interval, "+-level": of half its
   /// range, "0 level": of its value nearest to 0, "step": of the sampling interval, "1/step": of the rate. "": plain numbers.
@@ -76,7 +76,10 @@ struct ScanSpec {
   /// it would cost minutes. 0: in any system all of them.
   int most_states = 0;
 
+  /// A frequency [Hz], scanned in steps of 1/(4T). Where `over` is set, the way after which something recurs, "displacement" (a role) or
+  /// "speed dt" (the integral of a role): `from` and `to` are then the fewest and the most periods over all of the way.
   [[nodiscard]] constexpr bool is_frequency() const { return count < 0; }
+  [[nodiscard]] constexpr bool is_in_time() const { return is_frequency() && over[0] == '\0'; }
   [[nodiscard]] constexpr bool is_scanned() const { return count != 0; }
 };
 

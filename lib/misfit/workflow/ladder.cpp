@@ -141,8 +141,10 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
 
 /// "width is fixed at 0.5 rad/s": values that discovery found and the study of the rung fixes; they stand in no table of estimates.
 std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
+  constexpr double none = 1e9;  // a floor that far away is no floor
   std::vector<std::string> out;
   for (const auto& [name, e] : from.parameters) {
+    if (std::abs(e.value) >= none) continue;
     const bool estimated = std::any_of(fit.parameters.begin(), fit.parameters.end(), [&, own = name](const auto& p) {
       const std::string known = p.first.substr(0, p.first.find('['));  // of a curve, whose coefficients are estimated
       return known == own || known.ends_with("." + own);

@@ -20,7 +20,8 @@ double beyond(double v, double edge) { return v > edge ? v - edge : v < -edge ? 
 void dc_motor(const double* x, const double* u, const Values& p, double* dx, double* y) {
   const double load = dry(x[0], p) + p("fan") * std::abs(x[0]) * x[0] + p("load") + p("cogging") * std::sin(7 * x[2]);
   dx[0] = (p("K") * x[1] - p("b") * x[0]) / p("J") - load;
-  dx[1] = (u[0] - p("R") * (1 + p("heating") * x[1] * x[1]) * x[1] - p("K") * x[0]) / p("L");
+  const double brushes = p("brushes") * std::tanh(x[1] / 0.2);
+  dx[1] = (u[0] - p("R") * (1 + p("heating") * x[1] * x[1]) * x[1] - brushes - p("K") * x[0]) / p("L");
   dx[2] = x[0];
   y[0] = x[0];
   y[1] = x[1];
@@ -74,6 +75,7 @@ void two_mass_drive(const double* x, const double* u, const Values& p, double* d
   const double slip = x[0] - x[1];
   double twist = x[2];
   if (p("gap") > 0.0) twist = beyond(twist, p("gap"));
+  twist *= 1 + p("joint") * std::cos(2 * x[3]);
   const double shaft = p("ks") * twist + p("ds") * slip + p("cubic") * x[2] * x[2] * x[2] + p("dry_shaft") * std::tanh(slip / 0.02);
   dx[0] = (u[0] - shaft - p("b") * x[0]) / p("J1");
   dx[1] = (shaft - p("b") * x[1]) / p("J2") - dry(x[1], p) - p("load") - p("unbalance") * std::sin(x[3]);
@@ -84,7 +86,8 @@ void two_mass_drive(const double* x, const double* u, const Values& p, double* d
 }
 
 void cart_pendulum(const double* x, const double* u, const Values& p, double* dx, double* y) {
-  const double belt = p("cogging") * std::sin(2 * std::numbers::pi * x[0] / 0.05);
+  const double at = x[0] / 0.02, magnet = p("magnet") * at * std::exp(-0.5 * at * at);
+  const double belt = p("cogging") * std::sin(2 * std::numbers::pi * x[0] / 0.05) + magnet;
   const double cart = u[0] - p("k") * x[0] - p("b") * x[1] - dry(x[1], p) - p("cubic") * x[0] * x[0] * x[0] - belt;
   const double pivot = -p("c") * x[3] - p("dry_pivot") * std::tanh(x[3] / 0.05) - p("drag") * std::abs(x[3]) * x[3];
   const double sine = std::sin(x[2]), cosine = std::cos(x[2]), m = p("m"), l = p("l");
