@@ -168,7 +168,7 @@ class Estimator {
       integration_.plan();
     }
     bool found = search(lengthened);
-    if (found && options_.thorough) weigh_outputs();
+    if (found && options_.thorough && !weigh_outputs()) return finish();
     while (found && settled_ && !integration_.negligible_at(estimate_.runs, estimate_.smoothed.covariance))
       found = approach() || search({});
     if (!found) return failed(why_);
@@ -229,9 +229,11 @@ class Estimator {
     is_linearised_ = false;
   }
 
-  /// inference/output_weights.h; stands at the highest end, estimate_ of it.
-  void weigh_outputs() {
-    if (other_weighings(shooting_.model()).empty() || !linearise_here() || !estimate_.smoothed.ok) return;
+  /// inference/output_weights.h; stands at the highest end, estimate_ of it. False: with the noise found there, the end cannot be run, or
+  /// is singular.
+  bool weigh_outputs() {
+    if (other_weighings(shooting_.model()).empty()) return true;
+    if (!linearise_here() || !estimate_.smoothed.ok) return false;
     Snapshot best = snapshot();
     const auto end_from = [&](const Weighing& weighing, const Snapshot& from) {
       return settles_elsewhere(weighing, from) ? std::optional(snapshot()) : std::nullopt;
@@ -243,7 +245,7 @@ class Estimator {
       return_to(best);
     }
     const SuspendedTimeLimit back;
-    static_cast<void>(linearise_here());
+    return linearise_here() && estimate_.smoothed.ok;
   }
 
   /// A search that begins with another noise of one output. False: it leads nowhere, or back.
