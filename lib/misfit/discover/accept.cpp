@@ -188,16 +188,21 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   return {ranked.end()};
 }
 
+/// χ² beyond what its degrees of freedom give by chance, counted twice.
+double worth(const UnknownCurve& curve) { return curve.result.chi2 - 2.0 * curve.result.dof; }
+
+bool is_significant(const UnknownCurve& curve, const SearchContext& context) {
+  return sidak(curve.p_value, context.families) < context.options.p_accept;
+}
+
 /// A curve of unknown form that promises more than the choice did where all were screened, and of which more than half is left with the
 /// choice in the model: whatever the choice is, it is not that. A true effect leaves nothing of the curves that it showed in.
 std::optional<UnknownCurve> larger_unknown(const RankedCandidate& choice, const std::vector<UnknownCurve>& unknown,
                                            const SearchContext& context) {
   constexpr double most_left = 0.5;
-  const auto worth = [](const UnknownCurve& c) { return c.result.chi2 - 2.0 * c.result.dof; };
   std::vector<const UnknownCurve*> larger;
   for (const UnknownCurve& curve : unknown) {
-    const bool significant = sidak(curve.p_value, context.families) < context.options.p_accept;
-    if (significant && worth(curve) > choice.screening->result.chi2) larger.push_back(&curve);
+    if (is_significant(curve, context) && worth(curve) > choice.screening->result.chi2) larger.push_back(&curve);
   }
   if (larger.empty()) return std::nullopt;
   const FilterEstimate& with = choice.refit->estimate;
@@ -242,7 +247,7 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
     return past(label(e->candidate), "the larger one cannot be accepted: " + e->candidate.why);
   }
   for (const UnknownCurve& curve : unknown) {
-    if (!(curve.result.chi2 - 2.0 * curve.result.dof > least)) continue;
+    if (!(worth(curve) > least)) continue;
     Choice none = past(curve.label(), "no known effect describes the larger one");
     none.larger = curve;
     return none;
@@ -336,7 +341,7 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
   const bool front_better = any && !ranked.empty() && !ranked.front().degenerate && ranked.front().log_p < best->log_p;
   if (left && (!any || front_better)) return unexplained(*left, left->quantities(), left->p_value);
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
-  if (!(sidak(best->p_value, context.families) < context.options.p_accept)) return std::nullopt;
+  if (!is_significant(*best, context)) return std::nullopt;
   return of_curve(*best);
 }
 
@@ -356,6 +361,18 @@ std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, con
   if (accepted) explain_others(ranked);
   if (accepted) return std::nullopt;
   return unexplained_force(ranked, remaining_with_best(ranked, imitations, context), choice.larger, unknown, context);
+}
+
+bool is_of_unknown_form(const std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
+                        const SearchContext& context) {
+  double of_candidates = 0.0, of_curves = 0.0;
+  for (const RankedCandidate& e : ranked) {
+    if (!e.candidate.absorbed) of_candidates = std::max(of_candidates, e.screening->result.chi2);
+  }
+  for (const UnknownCurve& curve : unknown) {
+    if (is_significant(curve, context)) of_curves = std::max(of_curves, worth(curve));
+  }
+  return of_curves > 2.0 * of_candidates;
 }
 
 }  // namespace misfit

@@ -51,4 +51,9 @@ inline constexpr double least_of_score = 0.5;
 [[nodiscard]] std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                                      const SearchContext& context);
 
+/// A curve of unknown form promises more than twice as much as any candidate, where all were screened: of those that are not refitted yet,
+/// or were refused, none is likely to explain it.
+[[nodiscard]] bool is_of_unknown_form(const std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
+                                      const SearchContext& context);
+
 }  // namespace misfit

@@ -51,8 +51,10 @@ class Search {
       if (options_.refits && !ranks().first()) return {};
       unexplained = accept_best(ranked_, unknown_, context());
       if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context());
-      if (none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context());
-      if (none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context());
+      if (none_accepted() && !is_of_unknown_form(ranked_, unknown_, context()) && refit_the_other_significant_ones())
+        unexplained = accept_best(ranked_, unknown_, context());
+      if (none_accepted() && !is_of_unknown_form(ranked_, unknown_, context()) && refit_afresh())
+        unexplained = accept_best(ranked_, unknown_, context());
       test_fixed_parameters();
     } catch (const TimeLimitReached& limit) {
       spent = limit.what();
