@@ -1,3 +1,4 @@
+#include "misfit/math/regular.h"
 #include "misfit/model/registry.h"
 
 namespace {
@@ -46,10 +47,7 @@ struct PeriodicForcing {
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    using std::cos;
-    using std::sin;
-    const T angle = two_pi * in.t * (in.c[frequency] + 0.5 * in.t * in.c[frequency_drift]);
-    F[port] = in.c[cosine] * cos(angle) + in.c[sine] * sin(angle);
+    F[port] = wave(T(in.t * (in.c[frequency] + 0.5 * in.t * in.c[frequency_drift])), in.c[cosine], in.c[sine]);
   }
 
   static double fastest_rate(const Reads<double, double>& in) { return two_pi * std::abs(in.c[frequency] + in.t * in.c[frequency_drift]); }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "misfit/math/regular.h"
 #include "misfit/model/registry.h"
 
 namespace {
@@ -42,10 +43,7 @@ struct Ripple {
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F) {
-    using std::cos;
-    using std::sin;
-    const T angle = 2.0 * std::numbers::pi * in.q[displacement] / in.c[spacing];
-    F[port] = in.c[cosine] * cos(angle) + in.c[sine] * sin(angle);
+    F[port] = wave(T(in.q[displacement] / in.c[spacing]), in.c[cosine], in.c[sine]);
   }
 
   /// Of the ripple at this speed, and of the oscillation in one of its hollows.

@@ -14,7 +14,7 @@ struct SensorFloor {
       "a floor that is left as it is reached; the derivative at the corner is that of the side the output is on";
   static constexpr const char* size = "outputs of -0.2 V at a floor of 0 V are 0.2 V too low without it";
   static constexpr const char* source = "JCGM 200:2012 (VIM), 4.7: measuring interval";
-  static constexpr const char* excludes = "a ceiling (sensor_saturation), a motion that is itself limited";
+  static constexpr const char* excludes = "a ceiling (sensor_saturation; both: sensor_range), a motion that is itself limited";
 
   enum Quantity { signal };
   static constexpr Role quantities[] = {{.name = "signal", .unit = "*"}};

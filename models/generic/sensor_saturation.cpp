@@ -51,7 +51,7 @@ struct SensorSaturation {
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* y) {
-    y[output] = in.c[clipped] * (above(T(in.c[floor] - in.q[signal])) - above(T(in.q[signal] - in.c[ceiling])));
+    y[output] = -in.c[clipped] * outside(in.q[signal], in.c[floor], in.c[ceiling]);
   }
 
   static std::vector<Example> examples() {

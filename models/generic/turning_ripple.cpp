@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "misfit/math/regular.h"
 #include "misfit/model/registry.h"
 
 namespace {
@@ -44,10 +45,7 @@ struct TurningRipple {
 
   template <class T, class K>
   static void add(const Reads<T, K>& in, T* F, T* drift) {
-    using std::cos;
-    using std::sin;
-    const T angle = 2.0 * std::numbers::pi * in.z[turned] / in.c[spacing];
-    F[port] = in.c[cosine] * cos(angle) + in.c[sine] * sin(angle);
+    F[port] = wave(T(in.z[turned] / in.c[spacing]), in.c[cosine], in.c[sine]);
     drift[turned] = in.q[speed];
   }
 

@@ -70,8 +70,8 @@ struct World {
     return e;
   }
 
-  std::optional<Unexplained> accept(std::vector<RankedCandidate>& ranked) const {
-    return accept_best(ranked, {}, {estimate, registry(), signals, options, families()});
+  std::optional<Unexplained> accept(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown = {}) const {
+    return accept_best(ranked, unknown, {estimate, registry(), signals, options, families()});
   }
 };
 
@@ -507,6 +507,59 @@ TEST(Pairs, WhatGainsNothingByItselfIsNotAcceptedWithoutASecond) {
   const Candidate& friction = of(ranked, "coulomb_friction");
   EXPECT_FALSE(friction.accepted) << friction.why;
   EXPECT_THAT(friction.why, testing::HasSubstr("the held-out log-likelihood does not rise"));
+}
+
+std::vector<UnknownCurve> curves_of(const World& world) {
+  const ScoreTest score(world.estimate);
+  const ForceSensitivity force = sensitivity_of_forces_and_parameters(world.estimate);
+  return unknown_curves({world.estimate, score, force});
+}
+
+const UnknownCurve& force_over_the_rate(const std::vector<UnknownCurve>& curves) {
+  return *std::find_if(curves.begin(), curves.end(),
+                       [](const UnknownCurve& c) { return c.kind == PortKind::dynamic && c.quantity == "v"; });
+}
+
+/// What an offset explains is not the friction, of which the curve of the rate is left; friction leaves nothing of it.
+TEST(MostlyLeft, IsTheCurveThatTheRefittedEffectDoesNotExplain) {
+  const World world = with_offset_and_friction(1.0);
+  const UnknownCurve rubs = force_over_the_rate(curves_of(world));
+  ASSERT_GT(rubs.worth(), 50.0);
+  const auto left = mostly_left(world.entry("input_offset").refit->estimate, {rubs}, world.options);
+  ASSERT_TRUE(left.has_value());
+  EXPECT_EQ(left->quantity, "v");
+  EXPECT_FALSE(mostly_left(world.entry("coulomb_friction").refit->estimate, {rubs}, world.options).has_value());
+  EXPECT_FALSE(mostly_left(world.entry("input_offset").refit->estimate, {}, world.options).has_value());
+}
+
+/// A cart with a constant force whose sensor of the position is not straight.
+World with_offset_and_crooked_sensor() {
+  Signals recorded = record_of_cart({effect("input_offset")}, {{"input_offset", 0.8}});
+  for (double& x : recorded.measured.front().values) x += 0.02 * std::sin(3.0 * x) * std::sin(3.0 * x);
+  return World(std::move(recorded));
+}
+
+TEST(Choice, IsNotMadePastALargerCurveThatItLeaves) {
+  const World world = with_offset_and_crooked_sensor();
+  const std::vector<UnknownCurve> curves = curves_of(world);
+  std::vector<RankedCandidate> alone = {world.entry("input_offset")}, beside = {world.entry("input_offset")};
+  world.accept(alone);
+  EXPECT_TRUE(alone[0].candidate.accepted) << alone[0].candidate.why;
+  const auto unexplained = world.accept(beside, curves);
+  EXPECT_FALSE(beside[0].candidate.accepted);
+  EXPECT_THAT(beside[0].candidate.why, testing::HasSubstr("of which more than half is left with it in the model"));
+  ASSERT_TRUE(unexplained.has_value());
+  ASSERT_TRUE(unexplained->curve.has_value());
+  EXPECT_EQ(unexplained->curve->kind, PortKind::sensor);
+}
+
+TEST(IsOfUnknownForm, WhereACurvePromisesTwiceWhatAnyCandidateDoes) {
+  const World world = with_friction(1.5);
+  const SearchContext context{world.estimate, registry(), world.signals, world.options, world.families()};
+  const std::vector<UnknownCurve> curves = curves_of(world);
+  EXPECT_TRUE(is_of_unknown_form({world.entry("input_offset", false)}, curves, context));
+  EXPECT_FALSE(is_of_unknown_form({world.entry("input_offset", false), world.entry("coulomb_friction", false)}, curves, context));
+  EXPECT_FALSE(is_of_unknown_form({}, {}, context));
 }
 
 TEST(Refit, ThatEndsFarBelowItsScoreHasFailedAndSaysNothingAgainstItsEffect) {

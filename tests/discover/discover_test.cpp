@@ -353,6 +353,22 @@ TEST(Screen, SaysWhichFrequenciesItLookedAt) {
   EXPECT_THAT(what_was_tried(s), testing::HasSubstr("0.2 to 10.2 Hz, not up to 22.5 Hz: too many unevenly spaced samples"));
 }
 
+TEST(Screen, SaysWhichSpacingsItLookedAt) {
+  CandidateModel candidate_model;
+  candidate_model.effect = "ripple";
+  candidate_model.recurs_along = {.quantity = 0};
+  candidate_model.model.parameters.emplace_back().unit = "V";
+  candidate_model.frequency = 0;
+  ScreeningResult s;
+  s.candidate_model = &candidate_model;
+  s.cells = 8;
+  s.cells_effective = 500.0;
+  s.frequencies = {0.25, 0.125, 7, 1.0};  // waves per volt
+  EXPECT_THAT(what_was_tried(s), testing::EndsWith("8 cells, 500 effective tests, every 1 V to 4 V"));
+  s.frequencies.wanted = 4.0;
+  EXPECT_THAT(what_was_tried(s), testing::EndsWith("every 1 V to 4 V, not down to 0.25 V: too many samples"));
+}
+
 /// The model turns with a rolled camera: held gains would call the roll known nine times better than it is.
 TEST(CandidateModels, ARolledCameraIsHardlySeenInTheMotion) {
   const Flight flight(fly(15.0, 36));

@@ -1,4 +1,4 @@
-// A scale whose reading ends at +-40 N, or at 0: a spring that is pushed and pulled.
+// A scale whose reading ends above and below, below, or above: a spring that is pushed and pulled.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void expect_first(const Signals& recording, const char* effect, const char* edge
   EXPECT_LT(at.sigma, 0.2);
 }
 
-TEST(ASensorThatEnds, ToBothSidesIsFoundWithItsRange) { expect_first(scale(-40.0, 40.0, 11), "sensor_range", "range", 40.0); }
+TEST(ASensorThatEnds, ToBothSidesIsFoundWithItsRange) { expect_first(scale(-20.0, 40.0, 11), "sensor_range", "ceiling", 40.0); }
 TEST(ASensorThatEnds, BelowIsFoundWithItsFloor) { expect_first(scale(-5.0, 1e9, 12), "sensor_floor", "floor", -5.0); }
 TEST(ASensorThatEnds, AboveIsFoundWithItsCeiling) { expect_first(scale(-1e9, 30.0, 13), "sensor_saturation", "ceiling", 30.0); }
 

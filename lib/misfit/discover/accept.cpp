@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "misfit/core/text.h"
@@ -188,40 +189,17 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   return {ranked.end()};
 }
 
-/// χ² beyond what its degrees of freedom give by chance, counted twice.
-double worth(const UnknownCurve& curve) { return curve.result.chi2 - 2.0 * curve.result.dof; }
-
 bool is_significant(const UnknownCurve& curve, const SearchContext& context) {
   return sidak(curve.p_value, context.families) < context.options.p_accept;
 }
 
-/// A curve of unknown form that promises more than the choice did where all were screened, and of which more than half is left with the
-/// choice in the model: whatever the choice is, it is not that. A true effect leaves nothing of the curves that it showed in.
-std::optional<UnknownCurve> larger_unknown(const RankedCandidate& choice, const std::vector<UnknownCurve>& unknown,
-                                           const SearchContext& context) {
-  constexpr double most_left = 0.5;
-  std::vector<const UnknownCurve*> larger;
-  for (const UnknownCurve& curve : unknown) {
-    if (is_significant(curve, context) && worth(curve) > choice.screening->result.chi2) larger.push_back(&curve);
-  }
-  if (larger.empty()) return std::nullopt;
-  const FilterEstimate& with = choice.refit->estimate;
-  const ScoreTest score(with);
-  const ForceSensitivity force = sensitivity_of_forces_and_parameters(with);
-  const std::vector<UnknownCurve> after = unknown_curves({.estimate = with,
-                                                          .score = score,
-                                                          .force = force,
-                                                          .threads = context.options.threads,
-                                                          .calibrated = context.options.calibration != nullptr});
-  std::sort(larger.begin(), larger.end(), [](const UnknownCurve* a, const UnknownCurve* b) { return a->order() < b->order(); });
-  for (const UnknownCurve* curve : larger) {
-    const auto same = std::find_if(after.begin(), after.end(), [&](const UnknownCurve& c) {
-      return c.kind == curve->kind && c.port == curve->port && c.quantity == curve->quantity;
-    });
-    const bool left = same != after.end() && sidak(same->p_value, static_cast<double>(after.size())) < context.options.p_accept;
-    if (left && worth(*same) > most_left * worth(*curve)) return *curve;
-  }
-  return std::nullopt;
+/// Curves of unknown form that promised more than the choice did where all were screened.
+std::vector<UnknownCurve> larger_than(const RankedCandidate& choice, const std::vector<UnknownCurve>& unknown,
+                                      const SearchContext& context) {
+  std::vector<UnknownCurve> out;
+  std::copy_if(unknown.begin(), unknown.end(), std::back_inserter(out),
+               [&](const UnknownCurve& curve) { return is_significant(curve, context) && curve.worth() > choice.screening->result.chi2; });
+  return out;
 }
 
 /// Step 5: a choice is not made past one that explains more than twice as much. Such an imitation is chosen in its place if a second effect
@@ -247,12 +225,12 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
     return past(label(e->candidate), "the larger one cannot be accepted: " + e->candidate.why);
   }
   for (const UnknownCurve& curve : unknown) {
-    if (!(worth(curve) > least)) continue;
+    if (!(curve.worth() > least)) continue;
     Choice none = past(curve.label(), "no known effect describes the larger one");
     none.larger = curve;
     return none;
   }
-  if (auto larger = larger_unknown(*choice.at, unknown, context)) {
+  if (auto larger = mostly_left(choice.at->refit->estimate, larger_than(*choice.at, unknown, context), context.options)) {
     choice.at->candidate.why = "explains less than " + larger->label() +
                                " would, of which more than half is left with it in the model; no known effect describes the larger one";
     return {.at = ranked.end(), .larger = std::move(larger)};
@@ -370,7 +348,7 @@ bool is_of_unknown_form(const std::vector<RankedCandidate>& ranked, const std::v
     if (!e.candidate.absorbed) of_candidates = std::max(of_candidates, e.screening->result.chi2);
   }
   for (const UnknownCurve& curve : unknown) {
-    if (is_significant(curve, context)) of_curves = std::max(of_curves, worth(curve));
+    if (is_significant(curve, context)) of_curves = std::max(of_curves, curve.worth());
   }
   return of_curves > 2.0 * of_candidates;
 }

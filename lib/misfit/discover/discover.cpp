@@ -51,10 +51,9 @@ class Search {
       if (options_.refits && !ranks().first()) return {};
       unexplained = accept_best(ranked_, unknown_, context());
       if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context());
-      if (none_accepted() && !is_of_unknown_form(ranked_, unknown_, context()) && refit_the_other_significant_ones())
-        unexplained = accept_best(ranked_, unknown_, context());
-      if (none_accepted() && !is_of_unknown_form(ranked_, unknown_, context()) && refit_afresh())
-        unexplained = accept_best(ranked_, unknown_, context());
+      const bool more_to_try = !is_of_unknown_form(ranked_, unknown_, context());
+      if (more_to_try && none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context());
+      if (more_to_try && none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context());
       test_fixed_parameters();
     } catch (const TimeLimitReached& limit) {
       spent = limit.what();

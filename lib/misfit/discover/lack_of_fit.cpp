@@ -61,20 +61,39 @@ std::optional<UnknownCurve> worst_left(std::vector<UnknownCurve> after, double t
   for (auto& curve : after) {
     curve.p_value = sidak(curve.p_value, tests);
     const double share = curve.memory.empty() || !linear ? added.least_share : least_share_of_all;
-    if (curve.p_value > options.p_accept || curve.result.chi2 - 2.0 * curve.result.dof < share * added.drop) continue;
+    if (curve.p_value > options.p_accept || curve.worth() < share * added.drop) continue;
     if (!worst || curve.order() < worst->order()) worst = curve;
   }
   return worst;
 }
 
+/// What score tests in a refitted model need.
+class ScoresIn {
+ public:
+  ScoresIn(const FilterEstimate& with, const DiscoverOptions& options)
+      : score_(with),
+        force_(sensitivity_of_forces_and_parameters(with)),
+        work_{
+            .estimate = with, .score = score_, .force = force_, .threads = options.threads, .calibrated = options.calibration != nullptr} {}
+  ScoresIn(const ScoresIn&) = delete;
+  ScoresIn& operator=(const ScoresIn&) = delete;
+  ScoresIn(ScoresIn&&) = delete;
+  ScoresIn& operator=(ScoresIn&&) = delete;
+  ~ScoresIn() = default;
+  [[nodiscard]] const ScoreWork& work() const { return work_; }
+
+ private:
+  ScoreTest score_;
+  ForceSensitivity force_;
+  ScoreWork work_;
+};
+
 }  // namespace
 
 std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model, const Added& added,
                                                   const DiscoverOptions& options) {
-  const ScoreTest score(with);
-  const ForceSensitivity force = sensitivity_of_forces_and_parameters(with);
-  const ScoreWork work{
-      .estimate = with, .score = score, .force = force, .threads = options.threads, .calibrated = options.calibration != nullptr};
+  const ScoresIn scores(with, options);
+  const ScoreWork& work = scores.work();
   const std::vector<int> read = quantities_that_tell(candidate_model, added.effects);
   std::vector<UnknownCurve> after = unknown_curves(work);
   const std::size_t of_anything = after.size();
@@ -84,6 +103,23 @@ std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, co
   append(after, unknown_own_rates(work, added.effects));
   const auto tests = static_cast<double>(after.size() + left_out);
   return worst_left(std::move(after), tests, candidate_model.lags, added, options);
+}
+
+std::optional<UnknownCurve> mostly_left(const FilterEstimate& with, std::vector<UnknownCurve> screened, const DiscoverOptions& options) {
+  constexpr double most_left = 0.5;
+  if (screened.empty()) return std::nullopt;
+  const ScoresIn scores(with, options);
+  const std::vector<UnknownCurve> after = unknown_curves(scores.work());
+  std::sort(screened.begin(), screened.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.order() < b.order(); });
+  const auto is_left = [&](const UnknownCurve& curve) {
+    const auto same = std::find_if(after.begin(), after.end(), [&](const UnknownCurve& c) {
+      return c.kind == curve.kind && c.port == curve.port && c.quantity == curve.quantity;
+    });
+    return same != after.end() && sidak(same->p_value, static_cast<double>(after.size())) < options.p_accept &&
+           same->worth() > most_left * curve.worth();
+  };
+  const auto left = std::find_if(screened.begin(), screened.end(), is_left);
+  return left == screened.end() ? std::nullopt : std::optional(*left);
 }
 
 }  // namespace misfit

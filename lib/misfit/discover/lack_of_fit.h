@@ -28,4 +28,9 @@ struct Added {
 [[nodiscard]] std::optional<UnknownCurve> remaining_lack_of_fit(const FilterEstimate& with, const CandidateModel& candidate_model,
                                                                 const Added& added, const DiscoverOptions& options);
 
+/// Of curves of the first screening, the most significant of which more than half is left in the refitted model: whatever its effect is, it
+/// is not that. A true effect leaves nothing of the curves that it shows in.
+[[nodiscard]] std::optional<UnknownCurve> mostly_left(const FilterEstimate& with, std::vector<UnknownCurve> screened,
+                                                      const DiscoverOptions& options);
+
 }  // namespace misfit

@@ -41,6 +41,9 @@ struct UnknownCurve {
   /// By which the first of several is chosen: log_p, but a force or an error is the simpler of two that explain about the same.
   [[nodiscard]] double order() const { return log_p + (kind == PortKind::quantity ? 0.5 * tied_drops : 0.0); }
 
+  /// χ² less twice what it is on average where nothing is missing.
+  [[nodiscard]] double worth() const { return result.chi2 - 2.0 * result.dof; }
+
   /// "an unknown curve dv/dt(v)", "an unknown surface dv/dt(v, u)", "an error of y that depends on u", "delay (input = u)"
   [[nodiscard]] std::string label() const;
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"

@@ -3,6 +3,7 @@
 // Functions with a corner or a root where a model passes through 0, written so that value and first derivative are finite everywhere.
 
 #include <cmath>
+#include <numbers>
 
 #include "misfit/math/scalar.h"
 
@@ -47,6 +48,21 @@ T beyond(const T& x, const W& half_width) {
   if (value_of(x) > value_of(half_width)) return T(x - half_width);
   if (value_of(x) < -value_of(half_width)) return T(x + half_width);
   return T(0.0);
+}
+
+/// What of x lies outside of low … high: x − high above, x − low below, 0 between.
+template <class T, class W>
+T outside(const T& x, const W& low, const W& high) {
+  return above(T(x - high)) - above(T(low - x));
+}
+
+/// A wave in its number of turns n: cosine cos(2πn) + sine sin(2πn).
+template <class T, class W>
+W wave(const T& turns, const W& cosine, const W& sine) {
+  using std::cos;
+  using std::sin;
+  const T angle = 2.0 * std::numbers::pi * turns;
+  return cosine * cos(angle) + sine * sin(angle);
 }
 
 }  // namespace misfit

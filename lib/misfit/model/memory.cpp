@@ -30,6 +30,8 @@ std::vector<MovedRates> moved_rates(const Effect& effect) {
   return out;
 }
 
+bool is_constant(const MovedRates& rates) { return rates.at == rates.ahead && rates.at == rates.behind; }
+
 bool is_linear(const MovedRates& rates) {
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < rates.at.size(); ++i) {
@@ -43,12 +45,12 @@ bool is_linear(const MovedRates& rates) {
 
 bool has_linear_memory(const Effect& effect) {
   const std::vector<MovedRates> rates = moved_rates(effect);
-  return !rates.empty() && !only_adds_up(effect) && std::all_of(rates.begin(), rates.end(), is_linear);
+  return !std::all_of(rates.begin(), rates.end(), is_constant) && std::all_of(rates.begin(), rates.end(), is_linear);
 }
 
 bool only_adds_up(const Effect& effect) {
   const std::vector<MovedRates> rates = moved_rates(effect);
-  return !rates.empty() && std::all_of(rates.begin(), rates.end(), [](const MovedRates& r) { return r.at == r.ahead && r.at == r.behind; });
+  return !rates.empty() && std::all_of(rates.begin(), rates.end(), is_constant);
 }
 
 }  // namespace misfit

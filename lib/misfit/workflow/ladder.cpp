@@ -139,12 +139,19 @@ void compare_with_parent(const FilterWork& child, const FilterWork& parent, int 
   }
 }
 
+/// What the effect's file keeps fixed and no search looks for: discovery has not found it.
+bool is_as_declared(const EffectSpec& effect, const std::string& name, double value) {
+  return std::any_of(effect.coefficients.begin(), effect.coefficients.end(), [&](const CoefficientSpec& c) {
+    const bool same = name == c.name || name.ends_with("." + std::string(c.name));
+    return same && c.fixed && !c.scan.is_scanned() && value == c.value;
+  });
+}
+
 /// "width is fixed at 0.5 rad/s": values that discovery found and the study of the rung fixes; they stand in no table of estimates.
-std::string not_estimated_in_words(const Candidate& from, const Fit& fit) {
-  constexpr double none = 1e9;  // a floor that far away is no floor
+std::string not_estimated_in_words(const Candidate& from, const EffectSpec& effect, const Fit& fit) {
   std::vector<std::string> out;
   for (const auto& [name, e] : from.parameters) {
-    if (std::abs(e.value) >= none) continue;
+    if (is_as_declared(effect, name, e.value)) continue;
     const bool estimated = std::any_of(fit.parameters.begin(), fit.parameters.end(), [&, own = name](const auto& p) {
       const std::string known = p.first.substr(0, p.first.find('['));  // of a curve, whose coefficients are estimated
       return known == own || known.ends_with("." + own);
@@ -333,7 +340,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from) rung.also = from->also;
     if (from) rung.holds = from->holds;
     if (from) rung.remained = from->remaining;
-    if (const std::string kept = from ? not_estimated_in_words(*from, work->fit) : ""; !kept.empty()) {
+    if (const std::string kept = from ? not_estimated_in_words(*from, registry_.effect(effect).spec(), work->fit) : ""; !kept.empty()) {
       rung.kept = kept;
       append_note(rung.note, kept);
     }

@@ -15,7 +15,6 @@
 #include "misfit/inference/curves.h"
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/output_weights.h"
-#include "misfit/inference/short_record.h"
 
 namespace misfit {
 namespace {
@@ -396,28 +395,9 @@ class Estimator {
     errors_of(experiments_, fit);
     set_initial_states(shooting_, experiments_, out);
     fit.facts["effective_parameters"] = format_value(estimate_.smoothed.edf);
-    add_remarks(estimate_, covariance, out);
+    add_remarks({estimate_, {shooting_, estimate_.runs, experiments_}, setting_, regression_says_driven_, other_maxima_}, covariance, out);
     fit.linearisations = shooting_.linearisations();
     return out;
-  }
-
-  void add_remarks(const LinearisedEstimate& end, const Eigen::MatrixXd& covariance, FittedModel& out) const {
-    Fit& fit = out.fit;
-    const Eigen::Index columns = out.model.theta().size();
-    const InputTable inputs = input_table(experiments_.front(), out.model);
-    const std::vector<std::string> scales =
-        scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments_.front().t.front());
-    fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
-    warn_of_collinearity(out.model, covariance.topLeftCorner(columns, columns), fit);
-    warn_of_other_trims(fit);
-    warn_of_other_noise(out.model, fit);
-    warn_of_unknown_noise({shooting_, end.runs, experiments_}, end.smoothed.edf, fit);
-    fit.warnings.insert(fit.warnings.end(), other_maxima_.begin(), other_maxima_.end());
-    const double unknowns = end.smoothed.edf / static_cast<double>(out.model.outputs());
-    classify_motion(out.model, {setting_, experiments_, unknowns, regression_says_driven_}, fit);
-    reject_prior_conflicts(out.model, covariance.topLeftCorner(columns, columns), fit);
-    if (end.degrees() < kFewestDegrees && !out.model.noise_is_given())
-      withhold_sigmas(too_few(end.linearised.count, end.smoothed.edf), fit);
   }
 
   /// From near the estimate to it. False if it is not near, if the noise is another one there, or the way is not found.

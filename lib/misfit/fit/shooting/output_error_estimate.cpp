@@ -5,6 +5,7 @@
 
 #include "misfit/inference/curve_freedom.h"
 #include "misfit/inference/curves.h"
+#include "misfit/inference/identifiable.h"
 #include "misfit/inference/short_record.h"
 
 namespace misfit::output_error_parts {
@@ -44,6 +45,26 @@ Eigen::MatrixXd describe_estimates(const LinearisedEstimate& end, const Simulate
   const auto& outputs = out.model.system->spec().outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) out.fit.noise.at(outputs[o].name).sigma *= std::sqrt(coloured.squared_correlations[o]);
   return covariance;
+}
+
+void add_remarks(const EndedSearch& search, const Eigen::MatrixXd& covariance, FittedModel& out) {
+  Fit& fit = out.fit;
+  const std::vector<Signals>& experiments = search.runs.experiments;
+  const double edf = search.end.smoothed.edf;
+  const Eigen::MatrixXd of_parameters = covariance.topLeftCorner(out.model.theta().size(), out.model.theta().size());
+  const InputTable inputs = input_table(experiments.front(), out.model);
+  const std::vector<std::string> scales =
+      scale_uncertainties(out.model, out.initial_states.front().data(), inputs.at(0), experiments.front().t.front());
+  fit.warnings.insert(fit.warnings.end(), scales.begin(), scales.end());
+  warn_of_collinearity(out.model, of_parameters, fit);
+  warn_of_other_trims(fit);
+  warn_of_other_noise(out.model, fit);
+  warn_of_unknown_noise(search.runs, edf, fit);
+  fit.warnings.insert(fit.warnings.end(), search.other_maxima.begin(), search.other_maxima.end());
+  const double unknowns = edf / static_cast<double>(out.model.outputs());
+  classify_motion(out.model, {search.setting, experiments, unknowns, search.regression_says_driven}, fit);
+  reject_prior_conflicts(out.model, of_parameters, fit);
+  if (search.end.degrees() < kFewestDegrees && !out.model.noise_is_given()) withhold_sigmas(too_few(search.end.linearised.count, edf), fit);
 }
 
 }  // namespace misfit::output_error_parts

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "misfit/fit/shooting/output_error_result.h"
@@ -30,5 +32,16 @@ struct DescribedWith {
 /// Parameters, curves and trim with the covariance of all unknowns, which is returned: allowing for autocorrelated residuals, and what
 /// white ones would give beside it.
 Eigen::MatrixXd describe_estimates(const LinearisedEstimate& end, const SimulatedRuns& search, const DescribedWith& with, FittedModel& out);
+
+/// A search that has ended, for what is to be said of it.
+struct EndedSearch {
+  const LinearisedEstimate& end;
+  SimulatedRuns runs;
+  const Setting& setting;
+  std::optional<bool> regression_says_driven;
+  const std::vector<std::string>& other_maxima;  ///< in words
+};
+/// Warnings, whether the motion is followed, priors that the data contradict; sigmas are withheld where too few measurements are left.
+void add_remarks(const EndedSearch& search, const Eigen::MatrixXd& covariance, FittedModel& out);
 
 }  // namespace misfit::output_error_parts
