@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "misfit/diagnose/distinct_ports.h"
 #include "tests/discover/record.h"
+#include "tests/fit/gimbal.h"
 
 namespace misfit {
 namespace {
@@ -36,6 +38,23 @@ TEST(ACandidate, HasItsClockWithinFortySamples) {
   EXPECT_EQ(of_one.lower, 0.0) << "a late sensor is a sensor_delay";
   EXPECT_NEAR(of_one.upper, 40 * 0.05, 1e-9);
   EXPECT_EQ(coefficient(candidates, "sensor_clock", "clock_rate").upper, 0.1) << "a rate, no time";
+}
+
+TEST(TwinsAmongCandidates, AreThoseAtTheRateThatADeclaredMomentIsAMultipleOf) {
+  const auto known = testing_gimbal::registry_with(testing_gimbal::gimbal("J"));
+  const FilterEstimate estimate = testing_gimbal::estimate_of(*known);
+  const std::vector<CandidateModel> all = candidate_models(estimate, testing_gimbal::request_of("text"), *known, nullptr);
+  const auto twins = twins_among(all, sought_at(estimate.model.system->spec(), ForceSensitivity(estimate)));
+  const auto count = [](const std::vector<const CandidateModel*>& list, const std::string& port) {
+    return std::count_if(list.begin(), list.end(),
+                         [&](const CandidateModel* c) { return c->effect == "cubic_stiffness" && c->port_names == std::vector{port}; });
+  };
+  std::vector<const CandidateModel*> listed;
+  for (const CandidateModel& c : all) listed.push_back(&c);
+  EXPECT_EQ(count(listed, "cable"), 1);
+  EXPECT_EQ(count(listed, "dw/dt"), 1);
+  EXPECT_EQ(count(twins, "cable"), 0);
+  EXPECT_EQ(count(twins, "dw/dt"), 1);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/data/estimators.h"
+#include "misfit/diagnose/distinct_ports.h"
 #include "misfit/diagnose/features.h"
 #include "misfit/diagnose/innovations.h"
 #include "misfit/diagnose/pulses.h"
@@ -129,22 +130,35 @@ SolvedMap map_of(const Search& search, const Features& features, int port) {
   return {std::move(map), std::move(result.covariance)};
 }
 
+/// A port where no force acts shows errors of sensors, and a force elsewhere in what it does within a sample: where one shows more clearly,
+/// that is as likely. `maps`: the most significant first.
+void say_where_no_force_acts(const SystemSpec& spec, std::vector<ForceMap>& maps) {
+  bool force_before = false;
+  for (ForceMap& map : maps) {
+    const bool forced = may_be_forced(spec, index_of(spec.dynamic_ports, map.port));
+    force_before = force_before || (forced && !map.sentence.empty());
+    if (forced || map.sentence.empty()) continue;
+    map.sentence += force_before ? ", where no force acts: what is missing elsewhere may look like that"
+                                 : ", where no force acts: an error of a sensor may look like that";
+  }
+}
+
 std::vector<ForceMap> all_maps(const Search& search, const DiagnoseOptions& options) {
-  const std::size_t ports = search.spec.dynamic_ports.size();
+  const std::vector<int> places = distinct_ports(search.spec, search.force);
+  const std::size_t ports = places.size();
   std::vector<SolvedMap> solved(ports * search.features.size());
   run_jobs(
-      solved.size(), options.threads,
-      [&](std::size_t k) { solved[k] = map_of(search, search.features[k / ports], static_cast<int>(k % ports)); }, options.progress);
+      solved.size(), options.threads, [&](std::size_t k) { solved[k] = map_of(search, search.features[k / ports], places[k % ports]); },
+      options.progress);
   std::vector<ForceMap> maps;
   for (auto& [map, covariance] : solved) {
     map.p_corrected = sidak(map.p_value, static_cast<double>(solved.size()));
     if (map.p_corrected < significant)
       map.sentence = where_it_fails(map.quantity == time_of_day ? beside_other_hours(map) : map, covariance);
-    if (!map.sentence.empty() && !may_be_forced(search.spec, index_of(search.spec.dynamic_ports, map.port)))
-      map.sentence += ", where no force acts: an error of a sensor may look like that";
     maps.push_back(std::move(map));
   }
   std::stable_sort(maps.begin(), maps.end(), [](const ForceMap& a, const ForceMap& b) { return a.p_value < b.p_value; });
+  say_where_no_force_acts(search.spec, maps);
   return maps;
 }
 
@@ -187,7 +201,7 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
   map.dof = result.dof;
   map.p_value = result.dof > 0 ? chi_square_tail(result.chi2, result.dof) : 1.0;
   const auto quantities = static_cast<double>(features.size());
-  map.p_corrected = sidak(map.p_value, static_cast<double>(spec.dynamic_ports.size()) * quantities * (quantities - 1.0) / 2.0);
+  map.p_corrected = sidak(map.p_value, static_cast<double>(distinct_ports(spec, force).size()) * quantities * (quantities - 1.0) / 2.0);
   out.push_back(std::move(map));
   return out;
 }

@@ -374,6 +374,27 @@ Eigen::MatrixXd ForceSensitivity::own_rate_columns(int own_state, const Eigen::M
   });
 }
 
+bool ForceSensitivity::are_multiples(int port, int other) const {
+  constexpr double rounding = 1e-9;  // of the largest
+  double aa = 0.0, ab = 0.0, bb = 0.0, largest = 0.0, apart = 0.0;
+  const auto over_all = [&](const auto& visit) {
+    for (const std::vector<double>& G : G_) {
+      for (std::size_t row = 0; row < G.size(); row += places_) visit(G[row + port], G[row + other]);
+    }
+  };
+  over_all([&](double a, double b) {
+    aa += a * a;
+    ab += a * b;
+    bb += b * b;
+  });
+  if (!(aa > 0.0) || !(bb > 0.0)) return false;
+  over_all([&](double a, double b) {
+    largest = std::max(largest, std::abs(a));
+    apart = std::max(apart, std::abs(a - ab / bb * b));
+  });
+  return apart <= rounding * largest;
+}
+
 Eigen::VectorXd ForceSensitivity::score_of_steps(PortKind kind, int index) const {
   const int place = kind == PortKind::quantity ? ports_ + index : index;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(times_.size());

@@ -81,6 +81,9 @@ class ForceSensitivity {
   /// ∂ log-likelihood/∂(force on a dynamic port, or a parameter at its place of parameters(), over the step from each sample), gains fixed:
   /// scans of many functions need only this (all samples). What a parameter does in the formulas of outputs is not in it.
   [[nodiscard]] Eigen::VectorXd score_of_steps(PortKind kind, int index) const;
+  /// Whether a force on one dynamic port does over every step what a constant multiple of it does on the other. Not where either does
+  /// nothing.
+  [[nodiscard]] bool are_multiples(int port, int other) const;
 
  private:
   void run_steps(Stepper& stepper, std::size_t experiment, std::size_t offset);

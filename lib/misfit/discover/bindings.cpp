@@ -8,6 +8,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/units.h"
 #include "misfit/model/declared.h"
+#include "misfit/model/rate_port.h"
 #include "misfit/model/rate_unit.h"
 
 namespace misfit {
@@ -47,8 +48,7 @@ std::vector<Roles> natural_ports(const SystemSpec& system) {
   std::vector<Roles> out;
   for (const auto& port : system.dynamic_ports) {
     const bool forced = std::find(system.force_ports.begin(), system.force_ports.end(), port.name) != system.force_ports.end();
-    const bool declared = port.name != "d" + port.conjugate + "/dt";
-    if (port.conjugate.empty() || (!forced && !system.force_ports.empty() && !(declared && suggests_places(system)))) continue;
+    if (port.conjugate.empty() || (!forced && !system.force_ports.empty() && !(!is_rate_port(port) && suggests_places(system)))) continue;
     Roles roles = roles_of_conjugate(system, port.conjugate);
     if (roles.empty()) continue;
     roles["port"] = port.name;

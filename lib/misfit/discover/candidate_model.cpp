@@ -314,6 +314,20 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
   return list_candidates(estimate, request, registry, calibration).models;
 }
 
+std::vector<const CandidateModel*> twins_among(const std::vector<CandidateModel>& models, const std::vector<int>& sought_at) {
+  std::vector<const CandidateModel*> out;
+  for (const CandidateModel& model : models) {
+    const BoundEffect& here = model.model.effects.back();
+    if (here.kind != PortKind::dynamic) continue;
+    BoundEffect there = here;
+    for (int& port : there.ports) port = port < 0 ? port : sought_at[port];
+    if (there.ports == here.ports) continue;
+    const auto is_there = [&](const CandidateModel& m) { return same_place(m.model.effects.back(), there); };
+    if (std::any_of(models.begin(), models.end(), is_there)) out.push_back(&model);
+  }
+  return out;
+}
+
 std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect, const Calibration* calibration) {
   const Effect& asked = fitted.registry.effect(effect.kind);
   if (!can_be_candidate(asked)) return std::nullopt;

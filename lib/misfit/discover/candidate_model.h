@@ -57,6 +57,9 @@ struct CandidateList {
 [[nodiscard]] std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request,
                                                            const Registry& registry, const Calibration* calibration);
 
+/// Those at a port whose forces are sought at another (sought_at()), where the same effect is listed there.
+[[nodiscard]] std::vector<const CandidateModel*> twins_among(const std::vector<CandidateModel>& models, const std::vector<int>& sought_at);
+
 /// One effect as a study asks for it; nullopt where it has no strength, is driven by noise, or does not suit the system, or cannot
 /// be assembled as a number.
 [[nodiscard]] std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect,

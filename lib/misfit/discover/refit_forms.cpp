@@ -106,24 +106,57 @@ WholeStart whole_start(const RefitWork& work, const Model& model, const ModelReq
 
 enum class Held { taken, refused, out_of_time };
 
-/// The whole effect at its maximum from a start, in place of what was found, if its log-likelihood is not lower by `allowed`.
-Held take_if_allowed(const RefitWork& work, const WholeStart& start, const FilterNoise& noise, double allowed, Refit& out) {
-  FilterOptions options = options_like(work.without, work.threads);
-  options.noise = noise;
-  try {
-    FilterEstimate held = estimate_filter(start.model, penalties_as_of(work.without, start.model), work.experiments, options);
-    if (held.out_of_time) return Held::out_of_time;
-    if (!held.converged || !(held.objective > out.estimate.objective - allowed)) return Held::refused;
-    out.estimate = std::move(held);
-    out.request = start.request;
-    out.moved = start.moved;
-    return Held::taken;
-  } catch (const TimeLimitReached&) {
-    return Held::out_of_time;
-  } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
-    return Held::refused;
+/// Searches for the maximum with the whole effect in place of what was found.
+class WholeSearch {
+ public:
+  WholeSearch(const RefitWork& work, Refit& out) : work_(work), out_(out) {}
+
+  /// From a start; taken if its log-likelihood is not lower by `allowed`. A first search is not verified, which is a third of the work:
+  /// where it ends far lower, or where the search before this one ended, there is nothing to look for more closely.
+  Held take_if_allowed(const WholeStart& start, const FilterNoise& noise, double allowed) {
+    try {
+      const double least = out_.estimate.objective - allowed;
+      const FilterEstimate nearly = estimate(start.model, noise, {});
+      if (nearly.out_of_time) return Held::out_of_time;
+      if (nearly.converged && (is_far_below(nearly, least) || is_where_the_last_ended(nearly))) return Held::refused;
+      last_ = nearly.objective;
+      FilterEstimate held = estimate(nearly.model, nearly.noise, least);
+      if (held.out_of_time) return Held::out_of_time;
+      if (!held.converged || !(held.objective > least)) return Held::refused;
+      out_.estimate = std::move(held);
+      out_.request = start.request;
+      out_.moved = start.moved;
+      return Held::taken;
+    } catch (const TimeLimitReached&) {
+      return Held::out_of_time;
+    } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
+      return Held::refused;
+    }
   }
-}
+
+ private:
+  /// Verified where an objective is given that is of use.
+  FilterEstimate estimate(const Model& model, const FilterNoise& noise, const std::optional<double>& least) const {
+    FilterOptions options = options_like(work_.without, work_.threads);
+    options.noise = noise;
+    options.verify = least.has_value();
+    options.least = least;
+    return estimate_filter(model, penalties_as_of(work_.without, model), work_.experiments, options);
+  }
+  /// Verifying a search that has converged adds a few units to its log-likelihood, seldom twenty (where the likelihood is not smooth).
+  static bool is_far_below(const FilterEstimate& nearly, double least) {
+    constexpr double most_added = 30.0;
+    return nearly.objective < least - most_added;
+  }
+  bool is_where_the_last_ended(const FilterEstimate& nearly) const {
+    constexpr double same = 0.5;
+    return last_ && std::abs(nearly.objective - *last_) < same;
+  }
+
+  const RefitWork& work_;
+  Refit& out_;
+  std::optional<double> last_;  ///< [log-likelihood] where the search before ended, before it was verified
+};
 
 /// Of the shapes that the screening looked at, those with which the whole effect explains most at once, beside the estimate's values or the
 /// study's own (an estimate without the effect may be far off); and the noise there. nullopt: there is no choice, or none can be run.
@@ -182,8 +215,9 @@ bool fix_whole_strengths(const RefitWork& work, const ScreeningResult& screening
   if (whole.empty()) return true;
   const ModelRequest as_requested = out.request;
   constexpr double of_a_part = 2.0;
+  WholeSearch search(work, out);
   const auto hold = [&](const Model& model, const FilterNoise& noise, double allowed) {
-    return take_if_allowed(work, whole_start(work, model, as_requested), noise, allowed, out);
+    return search.take_if_allowed(whole_start(work, model, as_requested), noise, allowed);
   };
   const Held from_part = hold(start_of_whole(out.estimate.model, whole), out.estimate.noise, of_a_part);
   if (from_part == Held::out_of_time) return false;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "misfit/core/lists.h"
+#include "misfit/diagnose/distinct_ports.h"
 #include "misfit/discover/bindings.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/math/statistics.h"
@@ -77,7 +78,10 @@ struct UnknownPlace {
 std::vector<UnknownPlace> places_of_unknown_curves(const ScoreWork& work) {
   const SystemSpec& system = work.estimate.model.system->spec();
   std::vector<UnknownPlace> out;
-  for (const int port : ports_of_unknown_curves(system)) out.push_back({PortKind::dynamic, port});
+  const std::vector<int> sought = sought_at(system, work.force);
+  for (const int port : ports_of_unknown_curves(system)) {
+    if (sought[port] == port || !may_be_forced(system, sought[port])) out.push_back({PortKind::dynamic, port});
+  }
   for (const int port : parameters_of_unknown_curves(work.estimate.model)) {
     if (const int i = place_of(work.force.parameters(), port); i >= 0) out.push_back({PortKind::quantity, i});
   }

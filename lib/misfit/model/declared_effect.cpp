@@ -11,6 +11,7 @@
 #include "misfit/formula/build.h"
 #include "misfit/formula/program.h"
 #include "misfit/model/declared_parameter.h"
+#include "misfit/model/rate_port.h"
 
 namespace misfit {
 namespace {
@@ -277,7 +278,7 @@ class FormulaEffectBuilder {
     effect_->value_ = Program(graph_, {node}, leaves);
     effect_->slopes_ = Program(graph_, roots, leaves);
     for (const auto& port : system_.dynamic_ports) {
-      if (port.name != declared_.port || port.name != "d" + port.conjugate + "/dt") continue;
+      if (port.name != declared_.port || !is_rate_port(port)) continue;
       for (int i = 0; i < nq_; ++i) {
         if (port.conjugate != roles()[i].name) continue;
         effect_->conjugate_ = i;

@@ -20,6 +20,8 @@ struct FilterOptions {
   bool choose_roughness = true;                             ///< false: penalties as handed over
   double integration = kSearchTolerance;                    ///< tolerance of the integration to begin with
   bool verify = true;                                       ///< derivatives of the exact likelihood at the end, and steps by them
+  /// Objective that is of use: the steps at the end stop where, by far, they do not promise to come there. nullopt: any.
+  std::optional<double> least = {};
 };
 
 /// Where a search for the maximum begins.

@@ -208,6 +208,7 @@ void FilterSearch::refine_jointly() {
     if (!invert_joint(exact)) return;
     const std::optional<double> gained = step_jointly(exact);
     const double promised = *out_.newton_decrement;
+    if (is_hopeless(promised)) return;
     if (promised >= kDecrementOfOneSigma && gained.value_or(0.0) < std::min(little, little * promised)) {
       if (axis_steps++ == most_axis_steps || !step_along_axes()) return;
       continue;
@@ -219,6 +220,11 @@ void FilterSearch::refine_jointly() {
     }
     one_sided = promised < short_step && std::abs(*gained - promised) < as_promised * promised;
   }
+}
+
+bool FilterSearch::is_hopeless(double promised) const {
+  constexpr double exceeded = 3.0, beyond = 5.0;  // of a promise, and of the log-likelihood
+  return options_.least && at_.objective + exceeded * promised + beyond < *options_.least;
 }
 
 bool FilterSearch::differentiate(bool one_sided, LikelihoodDerivatives& exact) {

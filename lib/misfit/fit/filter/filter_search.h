@@ -100,6 +100,8 @@ class FilterSearch {
   /// axes of the correlation matrix (step_along_axes(), where a step promised little, twice at most: each costs about as much as a Newton
   /// step), or after a step of less than a sigma.
   void refine_jointly();
+  /// Even a multiple of the promised gain does not lead to FilterOptions::least.
+  [[nodiscard]] bool is_hopeless(double promised) const;
 
   bool differentiate(bool one_sided, LikelihoodDerivatives& exact);
 
