@@ -45,7 +45,7 @@ double percent_lower(const WindowSearch& search, const Found& a, const Found& b)
 }
 
 std::string compared(double percent) {
-  constexpr double clearly = 30.0;  // per cent: then it is overdamped, or it would have been taken
+  constexpr double clearly = 16.0;  // per cent: then it is overdamped, or it would have been taken
   if (percent < 1.0) return "does not lower the held-out error";
   if (percent < clearly) return fmt::format("lowers the held-out error by only {:.0f} %", percent);
   return fmt::format("lowers the held-out error by {:.0f} % and does not swing: misfit discover tests what that is", percent);
@@ -137,21 +137,31 @@ std::optional<LinearGuess> drifting_first_order(const GuessData& data, int lengt
   return out;
 }
 
-/// The best models of either order, and which of the two it is to be.
+/// The best models of either order, and which of the two it is to be. A second order that is overdamped is two first ones, and what its
+/// fast one stands for is for the search to name (a lag, a delay). But what a first order follows with a time constant longer than the
+/// record moves without a pull back (an axis under a motor): there a second order without one is enough if it is a little better, for a lag
+/// that a search would find beside the first order is no more than that.
 struct Choice {
   Found first, second;
   double lower = 0.0;  ///< the error of the second order, below that of the first [%]
   bool oscillates = false;
 
-  explicit Choice(const WindowSearch& search) : first(simplest(search, 1)), second(simplest(search, 2)) {
+  /// `seconds`: length of the record.
+  Choice(const WindowSearch& search, double seconds) : first(simplest(search, 1)), second(simplest(search, 2)) {
     constexpr double most_damped = 0.9;  // damping ratio
+    const auto is_clearly_better = [&](const Found& found) {
+      constexpr double clearly = 0.7;  // of the mean square: an error lower by a sixth
+      return search.excess(found.mean_square) < clearly * search.excess(first.mean_square);
+    };
     const bool swings = second.poles.damping < 2.0 * most_damped * std::sqrt(second.poles.stiffness) || second.poles.stiffness == 0.0;
+    oscillates = swings && is_clearly_better(second);
+    if (const Found free = search.best(2, false); !oscillates && first.poles.damping * seconds < 1.0 && is_clearly_better(free)) {
+      second = free;
+      oscillates = true;
+    }
     lower = percent_lower(search, second, first);
-    oscillates = swings && search.excess(second.mean_square) < half * search.excess(first.mean_square);
   }
   [[nodiscard]] const Found& found() const { return oscillates ? second : first; }
-
-  static constexpr double half = 0.5;  ///< of the mean square
 };
 
 bool has_inputs(const GuessData& data) {
@@ -179,7 +189,8 @@ struct Searched {
 std::optional<Searched> search_of(const GuessData& data) {
   const WindowSearch search(data.t, data.y, data.drivers);
   if (!search.possible()) return std::nullopt;
-  const Searched usual{search, Choice(search)};
+  const double seconds = data.t.back() - data.t.front();
+  const Searched usual{search, Choice(search, seconds)};
   if (!has_inputs(data)) return usual;
   Searched out = usual;
   for (int lengthened = 2; !out.search.needs_drivers(out.choice.found()); lengthened *= 2) {
@@ -188,7 +199,7 @@ std::optional<Searched> search_of(const GuessData& data) {
       out = usual;
       break;
     }
-    out = {longer, Choice(longer)};
+    out = {longer, Choice(longer, seconds)};
   }
   out.take_slow_inputs(data);
   return out;
@@ -206,8 +217,8 @@ LinearGuess guess_linear(const GuessData& data) {
   LinearGuess out =
       choice.oscillates ? second_order(data, search, choice.second, choice.lower) : first_order(search, choice.first, choice.lower);
   if (has_inputs(data) && (!choice.oscillates || choice.second.poles.stiffness == 0.0)) {
-    const double least =
-        choice.oscillates ? search.excess(choice.second.mean_square) : Choice::half * search.excess(choice.first.mean_square);
+    constexpr double half = 0.5;  // of the mean square
+    const double least = choice.oscillates ? search.excess(choice.second.mean_square) : half * search.excess(choice.first.mean_square);
     const char* fits =
         choice.oscillates ? "it fits no worse than a second order without a pull back to a rest" : "its held-out error is less than half";
     if (const auto drifting = drifting_first_order(data, search.lengthened(), least, fits)) out = *drifting;
