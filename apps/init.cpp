@@ -23,7 +23,7 @@ std::string survey_text(const RecordingSurvey& survey) {
                      survey.jitter > 1e-3 * survey.step ? fmt::format(", uneven by {:.2g} s", survey.jitter) : "");
   std::vector<std::vector<std::string>> rows = {{"column", "read as", "unit", "from", "to", "steps of", "missing", "because"}};
   for (const auto& c : survey.columns) {
-    const bool numbers = c.use != ColumnUse::text;
+    const bool numbers = c.use != ColumnUse::text && c.missing < survey.rows;
     rows.push_back({c.header, std::string(word_of(c.use)) + (c.use == ColumnUse::input || c.use == ColumnUse::output ? " " + c.name : ""),
                     c.unit, numbers ? format_value(c.low) : "", numbers ? format_value(c.high) : "",
                     c.resolution > 0.0 ? format_value(c.resolution) : "", c.missing > 0 ? std::to_string(c.missing) : "", c.why});

@@ -353,6 +353,12 @@ TEST(Recording, GapsRepeatedTimesMissingValuesAndConstantsAreSaid) {
   EXPECT_THAT(s.remarks, Contains(HasSubstr("gaps in time")));
 }
 
+TEST(Recording, AColumnWithoutAValueIsSaid) {
+  const RecordingSurvey s = survey(rows("t_s,torque,y", 100, [](int k) { return fmt::format("{},NaN,{}", 0.1 * k, std::sin(0.1 * k)); }));
+  EXPECT_EQ(column(s, "torque").use, ColumnUse::constant);
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("column 'torque' has no value at all")));
+}
+
 TEST(Recording, TimeThatRunsBackwardBeginsAnotherExperiment) {
   const RecordingSurvey s = survey(rows("t_s,y", 100, [](int k) { return fmt::format("{},{}", 0.1 * (k % 60), std::sin(0.3 * k)); }));
   ASSERT_EQ(s.parts.size(), 2U);

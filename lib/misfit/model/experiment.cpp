@@ -130,6 +130,13 @@ class Reader {
     for (std::size_t row : rows_) values.push_back(column[row]);
     return values;
   }
+  /// `role` is what the column is to the model.
+  [[noreturn]] void refuse_empty(const std::string& role, const std::string& name) const {
+    const Column* column = table_.find(header(name));
+    throw InputError(line(rows_.front()), (column == nullptr ? role + " '" : "column '" + shown(column->name) + "', " + role + " '") +
+                                              shown(name) + "' of experiment '" + shown(study_.name) +
+                                              "', has no value at all from here to the end: it needs at least one number");
+  }
   Source line(std::size_t row) const { return {table_.source, row < table_.line.size() ? table_.line[row] : 0, 0}; }
 
   /// Where the study maps no column to it and none is called t: one that is called time, as misfit init would take it.
@@ -200,7 +207,7 @@ class Reader {
     std::vector<bool> missing;
     for (double v : values) missing.push_back(!std::isfinite(v));
     const std::size_t filled = bridge(out_.t, values);
-    if (filled == values.size()) throw RunError("experiment '" + shown(study_.name) + "': input " + input.name + " has no value at all");
+    if (filled == values.size()) refuse_empty("input", input.name);
     if (filled == 0) return values;
     out_.notes.push_back("input " + input.name + ": " + std::to_string(filled) + " missing values bridged; the samples there are not used");
     for (auto& channel : out_.measured) {
@@ -242,8 +249,7 @@ class Reader {
   void count_missing() {
     for (const auto& channel : out_.measured) {
       const auto missing = std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isfinite(v); });
-      if (missing == std::ssize(channel.values))
-        throw RunError("experiment '" + shown(study_.name) + "': channel " + channel.name + " has no value at all: all samples are lost");
+      if (missing == std::ssize(channel.values)) refuse_empty("output", channel.name);
       if (missing > 0)
         out_.notes.push_back("channel " + channel.name + ": " + std::to_string(missing) + " of " + std::to_string(channel.values.size()) +
                              " samples missing, carried as gaps");

@@ -94,6 +94,7 @@ class ColumnClassifier {
     if (known.empty()) {
       s.use = ColumnUse::constant;
       s.why = "no value at all";
+      out_.remarks.push_back(fmt::format("column '{}' has no value at all: what it was to record is not in the model", s.header));
       return s;
     }
     const auto [low, high] = std::minmax_element(known.begin(), known.end());
