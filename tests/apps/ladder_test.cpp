@@ -316,9 +316,12 @@ TEST(OfTwoEffectsThatExplainAllBetweenThem, TheOneThatExplainsMoreByItselfIsName
   EXPECT_THAT(found.at(0).at("why").get<std::string>(), testing::HasSubstr("periodic_forcing explains what remains"));
   EXPECT_FALSE(found.at(0).contains("remaining")) << "nothing remains beside both";
   for (const json& other : found) {  // or is no more than a part of itself: a range of the sensor of which 84 % is found
-    if (other.at("effect") == "periodic_forcing") EXPECT_LT(drop_of(other), drop_of(found.at(0)));
-    if (drop_of(other) > drop_of(found.at(0)))
+    if (other.at("effect") == "periodic_forcing") {
+      EXPECT_LT(drop_of(other), drop_of(found.at(0)));
+    }
+    if (drop_of(other) > drop_of(found.at(0))) {
       EXPECT_THAT(other.at("why").get<std::string>(), testing::HasSubstr("only a part of it is found"));
+    }
   }
 }
 

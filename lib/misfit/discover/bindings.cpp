@@ -48,7 +48,8 @@ std::vector<Roles> natural_ports(const SystemSpec& system) {
   std::vector<Roles> out;
   for (const auto& port : system.dynamic_ports) {
     const bool forced = std::find(system.force_ports.begin(), system.force_ports.end(), port.name) != system.force_ports.end();
-    if (port.conjugate.empty() || (!forced && !system.force_ports.empty() && !(!is_rate_port(port) && suggests_places(system)))) continue;
+    const bool natural = forced || system.force_ports.empty() || (!is_rate_port(port) && suggests_places(system));
+    if (port.conjugate.empty() || !natural) continue;
     Roles roles = roles_of_conjugate(system, port.conjugate);
     if (roles.empty()) continue;
     roles["port"] = port.name;

@@ -92,6 +92,39 @@ std::optional<std::string> undetermined(const Model& model, const Eigen::MatrixX
   return p.name + " = " + in_display_unit(p.value, p.unit, *sigma);
 }
 
+void say_unexplained(const Unexplained& unexplained, const Candidate& best, Discovery& out) {
+  out.unexplained_port = unexplained.port;
+  out.unexplained_quantity = unexplained.quantity;
+  out.unexplained_error = unexplained.kind == PortKind::sensor;
+  out.unexplained_parameter = unexplained.kind == PortKind::quantity;
+  out.unexplained_effects = unexplained.effects;
+  out.unexplained_alike = unexplained.alike;
+  out.outcome = SearchOutcome::unknown_form;
+  out.verdict = "Something is missing that depends on " + unexplained.quantity + " (" + unexplained_place(out) + ", " +
+                p_equals(unexplained.p_value) + "), and no effect of the library explains it.";
+  if (!out.unexplained_alike.empty()) out.sentences.push_back("these data cannot distinguish it from " + join_words(out.unexplained_alike));
+  if (best.actual_drop)
+    out.sentences.push_back("the best candidate of the library is " + effect_at(best.effect, best.roles) + " (drop " +
+                            format_value(*best.actual_drop) + "): " + best.why);
+}
+
+void say_none_missing(double p_accept, Discovery& out) {
+  double least = 1.0;
+  std::string nearest;
+  for (const auto& c : out.candidates) {
+    if (c.p_value < least) {
+      least = c.p_value;
+      nearest = effect_at(c.effect, c.roles);
+    }
+  }
+  const std::size_t tested = effects_tested(out) + curves_tested(out);
+  const std::string closest = nearest.empty() ? "" : "; the smallest p is " + format_probability(least) + " (" + nearest + ")";
+  out.outcome = SearchOutcome::none_missing;
+  out.verdict = "No missing effect detected: " +
+                (tested == 1 ? "the one candidate does not have both" : "none of " + tested_in_words(out) + " has both") +
+                " a family-wise p below " + format_value(p_accept) + " and a held-out gain above ½ per parameter" + closest + ".";
+}
+
 }  // namespace
 
 std::optional<Unexplained> with_curves_alike(std::optional<Unexplained> unexplained, const std::vector<UnknownCurve>& all,
@@ -118,20 +151,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     return;
   }
   if (unexplained) {
-    out.unexplained_port = unexplained->port;
-    out.unexplained_quantity = unexplained->quantity;
-    out.unexplained_error = unexplained->kind == PortKind::sensor;
-    out.unexplained_parameter = unexplained->kind == PortKind::quantity;
-    out.unexplained_effects = unexplained->effects;
-    out.unexplained_alike = unexplained->alike;
-    out.outcome = SearchOutcome::unknown_form;
-    out.verdict = "Something is missing that depends on " + unexplained->quantity + " (" + unexplained_place(out) + ", " +
-                  p_equals(unexplained->p_value) + "), and no effect of the library explains it.";
-    if (!out.unexplained_alike.empty())
-      out.sentences.push_back("these data cannot distinguish it from " + join_words(out.unexplained_alike));
-    if (best.actual_drop)
-      out.sentences.push_back("the best candidate of the library is " + effect_at(best.effect, best.roles) + " (drop " +
-                              format_value(*best.actual_drop) + "): " + best.why);
+    say_unexplained(*unexplained, best, out);
     return;
   }
   if (best.actual_drop && best.p_value < p_accept) {
@@ -139,20 +159,7 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
     out.verdict = "No effect accepted; " + best_rejected(best) + ".";
     return;
   }
-  double least = 1.0;
-  std::string nearest;
-  for (const auto& c : out.candidates) {
-    if (c.p_value < least) {
-      least = c.p_value;
-      nearest = effect_at(c.effect, c.roles);
-    }
-  }
-  const std::size_t tested = effects_tested(out) + curves_tested(out);
-  const std::string closest = nearest.empty() ? "" : "; the smallest p is " + format_probability(least) + " (" + nearest + ")";
-  out.outcome = SearchOutcome::none_missing;
-  out.verdict = "No missing effect detected: " +
-                (tested == 1 ? "the one candidate does not have both" : "none of " + tested_in_words(out) + " has both") +
-                " a family-wise p below " + format_value(p_accept) + " and a held-out gain above ½ per parameter" + closest + ".";
+  say_none_missing(p_accept, out);
 }
 
 std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths) {

@@ -416,10 +416,11 @@ std::optional<Candidate> prediction_for(ModelLadder& ladder, const std::string& 
   std::ignore = session.registry.effect(effect);  // InputError with the nearest name
   if (!place.any()) {
     auto there = predict_effect(session, effect, place);
-    if (!there && !place.roles.empty())
+    if (!there && !place.roles.empty()) {
       throw InputError(
           "--at: " + effect +
           ": discovery lists no place of it that is free; a line of the study may put it anywhere (misfit help study: [effects])");
+    }
     return there;
   }
   try {
