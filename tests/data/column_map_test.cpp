@@ -7,6 +7,7 @@
 
 #include "misfit/core/error.h"
 #include "misfit/core/table.h"
+#include "tests/core/temporary_folder.h"
 
 namespace misfit {
 namespace {
@@ -36,6 +37,18 @@ TEST(MappedColumn, IsReadInTheUnitThatItsNameEndsWith) {
   EXPECT_THAT(read.notes, ElementsAre("column 'theta_deg' is read in deg, as its name says"));
   EXPECT_DOUBLE_EQ(angle_from("theta (deg)", "").values.front(), 90.0 * degree);
   EXPECT_DOUBLE_EQ(angle_from("t_ms", "", "s").values.front(), 0.09);
+}
+
+TEST(AColumnCalledAsTheSignalButForItsUnit, IsNamedWithTheLineThatTakesIt) {
+  Table table;
+  table.add("ram_mm", "", {90.0});
+  std::vector<std::string> notes;
+  const std::string said = message_of<InputError>([&] { static_cast<void>(ColumnMap{}.values(table, "ram", "m", notes)); });
+  EXPECT_THAT(said, testing::HasSubstr("no column 'ram'; if 'ram_mm' is meant: columns = { ram = \"ram_mm\" } in [[experiment]]"));
+  table.add("ram_V", "", {1.0});
+  EXPECT_THAT(message_of<InputError>([&] { static_cast<void>(ColumnMap{}.values(table, "ram", "m", notes)); }),
+              testing::HasSubstr("Valid: ram_mm, ram_V"))
+      << "two could be meant";
 }
 
 TEST(MappedColumn, TheUnitOfItsHeaderComesFirst) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "misfit/core/column_header.h"
+#include "misfit/core/error.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/table.h"
 #include "misfit/core/units.h"
@@ -16,8 +17,24 @@ std::string ColumnMap::header(const std::string& name) const {
   return it == header_of.end() ? name : it->second;
 }
 
+namespace {
+
+/// Called as the signal but for a unit behind its name (ram_mm): a study says whether that is what it means. nullptr: none, or several.
+const Column* with_unit_in_name(const Table& table, const std::string& name) {
+  const auto called = [&](const Column& column) { return read_header(column.name).name == name; };
+  const auto first = std::find_if(table.columns.begin(), table.columns.end(), called);
+  if (first == table.columns.end() || std::any_of(first + 1, table.columns.end(), called)) return nullptr;
+  return &*first;
+}
+
+}  // namespace
+
 std::vector<double> ColumnMap::values(const Table& table, const std::string& name, const std::string& unit,
                                       std::vector<std::string>& notes) const {
+  if (const Column* meant = table.find(header(name)) == nullptr ? with_unit_in_name(table, name) : nullptr; meant != nullptr) {
+    throw InputError({table.source, 0, 0}, fmt::format("no column '{}'; if '{}' is meant: columns = {{ {} = \"{}\" }} in [[experiment]]",
+                                                       shown(header(name)), shown(meant->name), name, shown(meant->name)));
+  }
   const Column& column = table.at(header(name));
   const std::string column_unit = read_header(column.name).unit;
   const bool own_name = header(name) == name, own_unit = !column.unit.empty() || own_name;
