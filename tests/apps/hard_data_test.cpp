@@ -60,7 +60,7 @@ TEST(BrokenTable, TimeThatRunsBackwards) {
 TEST(BrokenTable, EverySampleLost) {
   const StudyCopy study("validation");
   study.change_rows("alpha_history.csv", [](std::size_t, const Cells& c) { return c[0] + ",,"; });
-  expect_refused(study, 1, {"'history'", "alpha_T", "lost"});
+  expect_refused(study, 2, {"alpha_history.csv:2", "'alpha_T'", "'history'", "no value at all"});
 }
 
 TEST(BrokenTable, ASweepOfTwoPoints) {

@@ -217,6 +217,8 @@ TEST(SignalsFrom, TimeThatRunsBackwardsIsRefusedWithBothTimes) {
 TEST(SignalsFrom, AChannelWithoutAnyValueIsRefusedWithItsColumn) {
   Table table = recording(20);
   table.columns[1].values.assign(20, std::nan(""));
+  EXPECT_THROW(static_cast<void>(signals_from(table, eq_8(), plain())), RunError) << "it was computed";
+  table.line.assign(20, 2);
   try {
     static_cast<void>(signals_from(table, eq_8(), plain()));
     FAIL();

@@ -628,7 +628,7 @@ def two_pages():
     other.job("running", 2)
     other.wait(lambda: other.js("return document.activeElement.id") == "job", "the focus is not on Stop: this page has begun nothing")
     other.driver.switch_to.active_element.send_keys(Keys.ENTER)
-    said = other.wait(lambda: other.js("return document.querySelector('#job details summary:not([hidden])')"), "what it says")
+    said = other.wait(lambda: other.js("return document.querySelector('#job details:not([hidden]) summary')"), "what it says")  # not before it has said something
     other.js("arguments[0].focus()", said)
     for one in (page, other):
         one.job("done", 2)

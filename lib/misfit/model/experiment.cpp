@@ -130,8 +130,9 @@ class Reader {
     for (std::size_t row : rows_) values.push_back(column[row]);
     return values;
   }
-  /// `role` is what the column is to the model.
+  /// `role` is what the column is to the model. A table that was computed has no lines: what gave no value is no mistake of its reader.
   [[noreturn]] void refuse_empty(const std::string& role, const std::string& name) const {
+    if (table_.line.empty()) throw RunError("experiment '" + shown(study_.name) + "': " + role + " " + name + " has no value at all");
     const Column* column = table_.find(header(name));
     throw InputError(line(rows_.front()), (column == nullptr ? role + " '" : "column '" + shown(column->name) + "', " + role + " '") +
                                               shown(name) + "' of experiment '" + shown(study_.name) +
