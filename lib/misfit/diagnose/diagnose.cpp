@@ -104,6 +104,7 @@ struct Search {
   const ScoreTest& score;
   const ForceSensitivity& force;
   const std::vector<Features>& features;
+  const std::vector<int>& ports;  ///< distinct_ports()
 };
 
 /// A map and the covariance of its amplitudes.
@@ -144,12 +145,11 @@ void say_where_no_force_acts(const SystemSpec& spec, std::vector<ForceMap>& maps
 }
 
 std::vector<ForceMap> all_maps(const Search& search, const DiagnoseOptions& options) {
-  const std::vector<int> places = distinct_ports(search.spec, search.force);
-  const std::size_t ports = places.size();
+  const std::size_t ports = search.ports.size();
   std::vector<SolvedMap> solved(ports * search.features.size());
   run_jobs(
-      solved.size(), options.threads, [&](std::size_t k) { solved[k] = map_of(search, search.features[k / ports], places[k % ports]); },
-      options.progress);
+      solved.size(), options.threads,
+      [&](std::size_t k) { solved[k] = map_of(search, search.features[k / ports], search.ports[k % ports]); }, options.progress);
   std::vector<ForceMap> maps;
   for (auto& [map, covariance] : solved) {
     map.p_corrected = sidak(map.p_value, static_cast<double>(solved.size()));
@@ -164,7 +164,7 @@ std::vector<ForceMap> all_maps(const Search& search, const DiagnoseOptions& opti
 
 /// Cells of the two quantities whose maps are most significant.
 std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>& maps) {
-  const auto& [spec, score, force, features] = search;
+  const auto& [spec, score, force, features, ports] = search;
   std::vector<PairMap> out;
   if (maps.empty() || features.size() < 2) return out;
   const ForceMap& first = maps.front();
@@ -201,7 +201,7 @@ std::vector<PairMap> pair_maps(const Search& search, const std::vector<ForceMap>
   map.dof = result.dof;
   map.p_value = result.dof > 0 ? chi_square_tail(result.chi2, result.dof) : 1.0;
   const auto quantities = static_cast<double>(features.size());
-  map.p_corrected = sidak(map.p_value, static_cast<double>(distinct_ports(spec, force).size()) * quantities * (quantities - 1.0) / 2.0);
+  map.p_corrected = sidak(map.p_value, static_cast<double>(ports.size()) * quantities * (quantities - 1.0) / 2.0);
   out.push_back(std::move(map));
   return out;
 }
@@ -261,7 +261,8 @@ Diagnosis diagnose(const FilterEstimate& estimate, const DiagnoseOptions& option
   const ScoreTest score(estimate);
   const ForceSensitivity force(estimate);
   const std::vector<Features> features = features_of(estimate, force);
-  const Search search{estimate.model.system->spec(), score, force, features};
+  const std::vector<int> ports = distinct_ports(estimate.model.system->spec(), force);
+  const Search search{estimate.model.system->spec(), score, force, features, ports};
   out.whiteness = whiteness_of(estimate);
   out.maps = all_maps(search, options);
   out.pairs = pair_maps(search, out.maps);

@@ -314,18 +314,24 @@ std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, con
   return list_candidates(estimate, request, registry, calibration).models;
 }
 
-std::vector<const CandidateModel*> twins_among(const std::vector<CandidateModel>& models, const std::vector<int>& sought_at) {
-  std::vector<const CandidateModel*> out;
+std::vector<bool> twins_among(const std::vector<CandidateModel>& models, const std::vector<int>& sought_at) {
+  std::vector<bool> out;
   for (const CandidateModel& model : models) {
     const BoundEffect& here = model.model.effects.back();
-    if (here.kind != PortKind::dynamic) continue;
     BoundEffect there = here;
-    for (int& port : there.ports) port = port < 0 ? port : sought_at[port];
-    if (there.ports == here.ports) continue;
+    for (int& port : there.ports) port = port < 0 || here.kind != PortKind::dynamic ? port : sought_at[port];
     const auto is_there = [&](const CandidateModel& m) { return same_place(m.model.effects.back(), there); };
-    if (std::any_of(models.begin(), models.end(), is_there)) out.push_back(&model);
+    out.push_back(there.ports != here.ports && std::any_of(models.begin(), models.end(), is_there));
   }
   return out;
+}
+
+void leave_out(const std::vector<bool>& which, std::vector<CandidateModel>& models) {
+  std::vector<CandidateModel> kept;
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    if (!which[k]) kept.push_back(std::move(models[k]));
+  }
+  models = std::move(kept);
 }
 
 std::optional<CandidateModel> candidate_model_of(const FittedStudy& fitted, const EffectRequest& effect, const Calibration* calibration) {

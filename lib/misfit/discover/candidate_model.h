@@ -57,8 +57,9 @@ struct CandidateList {
 [[nodiscard]] std::vector<CandidateModel> candidate_models(const FilterEstimate& estimate, const ModelRequest& request,
                                                            const Registry& registry, const Calibration* calibration);
 
-/// Those at a port whose forces are sought at another (sought_at()), where the same effect is listed there.
-[[nodiscard]] std::vector<const CandidateModel*> twins_among(const std::vector<CandidateModel>& models, const std::vector<int>& sought_at);
+/// Of each, whether it is at a port whose forces are sought at another (sought_at()), where the same effect is listed, too.
+[[nodiscard]] std::vector<bool> twins_among(const std::vector<CandidateModel>& models, const std::vector<int>& sought_at);
+void leave_out(const std::vector<bool>& which, std::vector<CandidateModel>& models);
 
 /// One effect as a study asks for it; nullopt where it has no strength, is driven by noise, or does not suit the system, or cannot
 /// be assembled as a number.

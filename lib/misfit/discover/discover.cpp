@@ -44,7 +44,7 @@ class Search {
     std::optional<Unexplained> unexplained;
     std::string spent;
     try {
-      leave_out_twins();
+      leave_out(twins(), candidates_.models);
       screen_all();
       refit_the_best();
       refit_the_significant_with_shapes();
@@ -73,7 +73,8 @@ class Search {
 
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
-    families_ = static_cast<double>(candidates_.models.size() - twins().size() + count_of_unknown_curves(scores()));
+    const std::vector<bool> twin = twins();
+    families_ = static_cast<double>(std::count(twin.begin(), twin.end(), false)) + static_cast<double>(count_of_unknown_curves(scores()));
     if (const Effect& asked = registry_.effect(options_.only); asked.spec().has_unknown_form()) {
       out_.candidates = candidates_of_unknown_form(scores(), asked, families_);
       return std::move(out_);
@@ -96,14 +97,6 @@ class Search {
   /// Approximate shares of a search's time, measured on 79 s of flight.
   static constexpr double end_of_screen = 0.45, end_of_curves = 0.5, end_of_refits = 0.9;
 
-  std::vector<const CandidateModel*> twins() const {
-    return twins_among(candidates_.models, sought_at(estimate_.model.system->spec(), force_));
-  }
-  void leave_out_twins() {
-    const std::vector<const CandidateModel*> all = twins();
-    std::erase_if(candidates_.models, [&](const CandidateModel& m) { return std::find(all.begin(), all.end(), &m) != all.end(); });
-  }
-
   void refit_the_best_asked_for() {
     const auto wanted = [&](const RankedCandidate& e) { return options_.refit_best_of && options_.refit_best_of(e.candidate); };
     const auto best = std::find_if(ranked_.begin(), ranked_.end(), wanted);
@@ -112,6 +105,8 @@ class Search {
     refit_wave({.begin = [&](const RankedCandidate& e) { return e.screening == asked ? asked : nullptr; }});
     std::stable_partition(ranked_.begin(), ranked_.end(), [](const RankedCandidate& e) { return e.refit_begun; });
   }
+
+  std::vector<bool> twins() const { return twins_among(candidates_.models, sought_at(estimate_.model.system->spec(), force_)); }
 
   /// Progress of a part of the search that goes from one share of the whole to another.
   ProgressFn part(double from, double to) const {

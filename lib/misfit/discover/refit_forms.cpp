@@ -111,7 +111,7 @@ class WholeSearch {
  public:
   WholeSearch(const RefitWork& work, Refit& out) : work_(work), out_(out) {}
 
-  /// From a start; taken if its log-likelihood is not lower by `allowed`. A first search is not verified, which is a third of the work:
+  /// From a start; taken if its log-likelihood is not lower by `allowed`. A first search is not verified, which is most of the work:
   /// where it ends far lower, or where the search before this one ended, there is nothing to look for more closely.
   Held take_if_allowed(const WholeStart& start, const FilterNoise& noise, double allowed) {
     try {
