@@ -48,6 +48,7 @@ struct Candidate {
   std::map<std::string, Estimate> parameters;  ///< at the refit, else one Gauss–Newton step
   /// Parameters of the model that it can take over, and their values: fixed when it is added, since both could not be estimated.
   std::map<std::string, Estimate> fixed_in_model;
+  std::vector<double> knots;              ///< of its curve, closer together than usual [SI]; empty: as usual
   std::vector<std::string> free, fixed;   ///< its coefficients that the refit estimated or fixed unlike the effect says itself
   std::map<std::string, Estimate> force;  ///< random force per port after refitting
   /// Where the refit ended, for whoever begins there: all parameters of the model with the effect in their order [SI], and logarithms of

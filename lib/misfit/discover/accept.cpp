@@ -189,10 +189,6 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   return {ranked.end()};
 }
 
-bool is_significant(const UnknownCurve& curve, const SearchContext& context) {
-  return sidak(curve.p_value, context.families) < context.options.p_accept;
-}
-
 /// Curves of unknown form that promised more than the choice did where all were screened.
 std::vector<UnknownCurve> larger_than(const RankedCandidate& choice, const std::vector<UnknownCurve>& unknown,
                                       const SearchContext& context) {
@@ -298,6 +294,12 @@ std::optional<UnknownCurve> remaining_with_best(const std::vector<RankedCandidat
   return remaining_lack_of_fit(best.refit->estimate, *best.screening->candidate_model, {best.refit->drop}, context.options);
 }
 
+Unexplained unexplained_as(const UnknownCurve& form, std::string quantities, double p, const std::vector<UnknownCurve>& unknown,
+                           const SearchContext& context) {
+  const SystemSpec& system = context.estimate.model.system->spec();
+  return {form.kind, form.port, std::move(quantities), p, effects_of_unknown_form(form, unknown, system, context.registry)};
+}
+
 /// Step 9: a force that depends on a quantity in a way that no named effect describes: the curve that remains with the best candidate if
 /// that candidate is more significant than any unknown curve, else the most significant unknown curve; first of all the `larger` one past
 /// which no choice was made.
@@ -305,25 +307,26 @@ std::optional<Unexplained> unexplained_force(const std::vector<RankedCandidate>&
                                              const std::optional<UnknownCurve>& larger, const std::vector<UnknownCurve>& unknown,
                                              const SearchContext& context) {
   const auto best = std::min_element(unknown.begin(), unknown.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
-  const auto unexplained = [&](const UnknownCurve& form, std::string quantities, double p) -> Unexplained {
-    const SystemSpec& system = context.estimate.model.system->spec();
-    return {form.kind, form.port, std::move(quantities), p, effects_of_unknown_form(form, unknown, system, context.registry)};
-  };
-  const auto of_curve = [&](const UnknownCurve& curve) {
-    Unexplained out = unexplained(curve, curve.quantity, sidak(curve.p_value, context.families));
-    out.curve = curve;
-    return out;
-  };
-  if (larger) return of_curve(*larger);
+  if (larger) return unexplained_by(*larger, unknown, context);
   const bool any = best != unknown.end();
   const bool front_better = any && !ranked.empty() && !ranked.front().degenerate && ranked.front().log_p < best->log_p;
-  if (left && (!any || front_better)) return unexplained(*left, left->quantities(), left->p_value);
+  if (left && (!any || front_better)) return unexplained_as(*left, left->quantities(), left->p_value, unknown, context);
   if (!any || (front_better && ranked.front().refit)) return std::nullopt;  // what a known effect explains better is not unknown
   if (!is_significant(*best, context)) return std::nullopt;
-  return of_curve(*best);
+  return unexplained_by(*best, unknown, context);
 }
 
 }  // namespace
+
+bool is_significant(const UnknownCurve& curve, const SearchContext& context) {
+  return sidak(curve.p_value, context.families) < context.options.p_accept;
+}
+
+Unexplained unexplained_by(const UnknownCurve& curve, const std::vector<UnknownCurve>& unknown, const SearchContext& context) {
+  Unexplained out = unexplained_as(curve, curve.quantity, sidak(curve.p_value, context.families), unknown, context);
+  out.curve = curve;
+  return out;
+}
 
 std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                        const SearchContext& context) {

@@ -51,6 +51,12 @@ inline constexpr double least_of_score = 0.5;
 [[nodiscard]] std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
                                                      const SearchContext& context);
 
+/// What is missing where it is this curve: one of `unknown`.
+[[nodiscard]] Unexplained unexplained_by(const UnknownCurve& curve, const std::vector<UnknownCurve>& unknown, const SearchContext& context);
+
+/// Corrected for all families of the search, below the p-value of acceptance?
+[[nodiscard]] bool is_significant(const UnknownCurve& curve, const SearchContext& context);
+
 /// A curve of unknown form promises more than twice as much as any candidate, where all were screened: of those that are not refitted yet,
 /// or were refused, none is likely to explain it.
 [[nodiscard]] bool is_of_unknown_form(const std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,

@@ -56,6 +56,7 @@ class Search {
       const bool more_to_try = !is_of_unknown_form(ranked_, unknown_, context());
       if (more_to_try && none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context());
       if (more_to_try && none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context());
+      if (!unexplained && none_accepted()) unexplained = what_is_narrow();
       test_fixed_parameters();
     } catch (const TimeLimitReached& limit) {
       spent = limit.what();
@@ -371,6 +372,22 @@ class Search {
     c.refit_values = there.model.values();
     c.refit_log_noise = pack(there.noise, there.model.system->spec(), there.reference).value;
     c.force = random_force(there);
+  }
+
+  /// Where nothing else shows as much: a force or an error that changes over shorter ways.
+  std::optional<Unexplained> what_is_narrow() {
+    double shown = 0.0;
+    for (const RankedCandidate& e : ranked_) {
+      if (e.refit && significant(e)) shown = std::max(shown, e.refit->drop);
+    }
+    std::vector<UnknownCurve> narrow = narrow_curves(scores());
+    if (narrow.empty()) return std::nullopt;
+    families_ += static_cast<double>(narrow.size());
+    const auto best = std::min_element(narrow.begin(), narrow.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
+    if (!is_significant(*best, context()) || !(best->worth() > shown)) return std::nullopt;
+    const UnknownCurve found = *best;
+    unknown_ = with_narrow_ones(std::move(unknown_), std::move(narrow));
+    return unexplained_by(found, unknown_, context());
   }
 
   void list_unknown() {

@@ -158,9 +158,21 @@ std::optional<OperatingRange::Range> OperatingRange::range_of_edge(const BoundEf
   return scanned_size(scan).kind == ScannedSize::Kind::range && !scan.is_frequency() ? range(scanned_quantity(effect, scan)) : std::nullopt;
 }
 
+namespace {
+
+/// A time that its effect keeps fixed, looked for in sampling intervals: how fast something happens of which the effect says no more than
+/// that it is fast (RateLimit::follow_time).
+bool is_hardly_seen_between_samples(const CoefficientSpec& c) { return c.fixed && std::string_view(c.scan.over) == "step"; }
+
+/// Of the shortest such time that is looked for. Shorter ones look alike, and take ever more steps of integration.
+constexpr double share_of_shortest = 0.2;
+
+}  // namespace
+
 double OperatingRange::lower_bound(const BoundEffect& effect, std::size_t coefficient) const {
   const EffectSpec& spec = effect.effect->spec();
   const CoefficientSpec& c = spec.coefficients[coefficient];
+  if (is_hardly_seen_between_samples(c)) return std::clamp(share_of_shortest * c.scan.from * step_, c.lower, c.upper);
   if (!c.scan.smooths) return c.lower;
   const int quantity = scanned_quantity(effect, c.scan);
   return std::clamp(narrowest(quantity), c.lower, c.upper);

@@ -112,13 +112,15 @@ class WholeSearch {
   WholeSearch(const RefitWork& work, Refit& out) : work_(work), out_(out) {}
 
   /// From a start; taken if its log-likelihood is not lower by `allowed`. A first search is not verified, which is most of the work:
-  /// where it ends far lower, or where the search before this one ended, there is nothing to look for more closely.
+  /// where it ends far lower, or where the search before this one ended, there is nothing to look for more closely. One that has not
+  /// converged may still rise, but hardly from below the model without the effect to a whole one that matters.
   Held take_if_allowed(const WholeStart& start, const FilterNoise& noise, double allowed) {
     try {
       const double least = out_.estimate.objective - allowed;
       const FilterEstimate nearly = estimate(start.model, noise, {});
       if (nearly.out_of_time) return Held::out_of_time;
-      if (nearly.converged && (is_far_below(nearly, least) || is_where_the_last_ended(nearly))) return Held::refused;
+      if (is_far_below(nearly, least) && (nearly.converged || is_no_better_than_without(nearly))) return Held::refused;
+      if (nearly.converged && is_where_the_last_ended(nearly)) return Held::refused;
       last_ = nearly.objective;
       FilterEstimate held = estimate(nearly.model, nearly.noise, least);
       if (held.out_of_time) return Held::out_of_time;
@@ -148,6 +150,7 @@ class WholeSearch {
     constexpr double most_added = 30.0;
     return nearly.objective < least - most_added;
   }
+  bool is_no_better_than_without(const FilterEstimate& nearly) const { return nearly.objective < work_.without.objective; }
   bool is_where_the_last_ended(const FilterEstimate& nearly) const {
     constexpr double same = 0.5;
     return last_ && std::abs(nearly.objective - *last_) < same;

@@ -1,6 +1,7 @@
 #include "misfit/discover/unknown_curves.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -150,14 +151,16 @@ UnknownTests tests_of_unknown_curves(const ScoreWork& work) {
   return out;
 }
 
+bool is_of_the_same(const UnknownCurve& a, const UnknownCurve& b) {
+  return a.kind == b.kind && a.port == b.port && a.quantity == b.quantity;
+}
+
 /// The best of those of one quantity (features of its past) at one place, corrected for their number. In the order of the list.
 std::vector<UnknownCurve> best_of_each(const std::vector<UnknownCurve>& all) {
   std::vector<UnknownCurve> out;
   std::vector<double> count;
   for (const UnknownCurve& curve : all) {
-    const auto same = std::find_if(out.begin(), out.end(), [&](const UnknownCurve& c) {
-      return c.kind == curve.kind && c.port == curve.port && c.quantity == curve.quantity;
-    });
+    const auto same = std::find_if(out.begin(), out.end(), [&](const UnknownCurve& c) { return is_of_the_same(c, curve); });
     if (same == out.end()) {
       out.push_back(curve);
       count.push_back(1.0);
@@ -197,9 +200,40 @@ std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn
   return best_of_each(all);
 }
 
+std::vector<UnknownCurve> narrow_curves(const ScoreWork& work) {
+  constexpr std::array narrow = {24, 72};
+  std::vector<UnknownCurve> all;
+  for (const int most : narrow) {
+    const std::vector<Features> features = features_of(work.estimate, work.force, most);
+    std::vector<UnknownTest> tests;
+    for (const Features& f : features) {
+      for (const UnknownPlace& place : places_of_unknown_curves(work)) {
+        if (f.index >= 0 && place.kind != PortKind::quantity) tests.push_back({&f, place});
+      }
+    }
+    const std::size_t first = all.size();
+    all.resize(first + tests.size());
+    run_jobs(tests.size(), work.threads, [&](std::size_t k) {
+      UnknownCurve& curve = all[first + k];
+      curve = unknown_curve_at(work, tests[k].place, *tests[k].features);
+      curve.hats = most;
+      curve.centre = tests[k].features->centre;
+    });
+  }
+  return best_of_each(all);
+}
+
+std::vector<UnknownCurve> with_narrow_ones(std::vector<UnknownCurve> usual, std::vector<UnknownCurve> narrow) {
+  for (UnknownCurve& curve : narrow) {
+    const auto same = std::find_if(usual.begin(), usual.end(), [&](const UnknownCurve& c) { return is_of_the_same(c, curve); });
+    if (same != usual.end() && curve.log_p < same->log_p) *same = std::move(curve);
+  }
+  return usual;
+}
+
 std::vector<UnknownCurve> curves_alike(const UnknownCurve& curve, const std::vector<UnknownCurve>& all, const ScoreWork& work,
                                        double p_accept) {
-  const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
+  const std::vector<Features> features = features_of(work.estimate, work.force, curve.hats);
   const auto columns = [&](const UnknownCurve& c) {
     const auto of = std::find_if(features.begin(), features.end(), [&](const Features& f) { return f.quantity == c.quantity; });
     return of == features.end() ? Eigen::MatrixXd() : work.force.columns_at(c.kind, c.index, of->f, of->ahead);
@@ -211,7 +245,9 @@ std::vector<UnknownCurve> curves_alike(const UnknownCurve& curve, const std::vec
   std::vector<UnknownCurve> out;
   for (const UnknownCurve& other : all) {
     const bool same = other.kind == curve.kind && other.index == curve.index && other.quantity == curve.quantity;
-    if (own.size() == 0 || same || other.result.dof == 0 || std::abs(other.log_p - curve.log_p) > 0.5 * tied_drops) continue;
+    if (own.size() == 0 || same || other.result.dof == 0 || other.hats != curve.hats ||
+        std::abs(other.log_p - curve.log_p) > 0.5 * tied_drops)
+      continue;
     const Eigen::MatrixXd others = columns(other);
     if (others.size() == 0) continue;
     Eigen::MatrixXd joint(own.rows(), own.cols() + others.cols());

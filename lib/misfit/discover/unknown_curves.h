@@ -35,6 +35,8 @@ struct UnknownCurve {
   int quantity_index = -1;
   std::string other;   ///< second quantity of a surface; empty: a curve
   std::string memory;  ///< what stands for a memory of unknown form in place of this, in words; empty: nothing
+  int hats = hats_of_unknown_curves;
+  std::vector<double> centre;  ///< of the hats that are left, where they are narrower than usual [unit of the quantity]; else empty
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
 
@@ -54,6 +56,13 @@ struct UnknownCurve {
 /// of the parameters (parameters_of_unknown_curves()) of which `work.force` has columns.
 [[nodiscard]] std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress = {});
 [[nodiscard]] std::size_t count_of_unknown_curves(const ScoreWork& work);
+
+/// What changes over shorter ways than unknown_curves() can follow (a detent, a magnet beside the way, a worn place of a potentiometer): of
+/// every quantity of the system, as a force and as an error of an output, with 24 and with 72 hats, the better of the two corrected for
+/// both. Slower by much than all of unknown_curves(): for where these and all effects show nothing.
+[[nodiscard]] std::vector<UnknownCurve> narrow_curves(const ScoreWork& work);
+/// `usual` curves, and in place of those of the same quantity at the same place the narrow ones that are more significant.
+[[nodiscard]] std::vector<UnknownCurve> with_narrow_ones(std::vector<UnknownCurve> usual, std::vector<UnknownCurve> narrow);
 
 /// Those of `all` that explain about the same as `curve` (p-values apart by no more than a drop of tied_drops), where neither explains
 /// anything more beside the other (one score test of both): these data cannot tell them apart. None of the past of an input.

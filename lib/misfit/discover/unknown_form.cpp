@@ -86,6 +86,25 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return out;
 }
 
+std::vector<double> centres_of(const std::vector<Features>& features, const std::string& quantity) {
+  const auto of = std::find_if(features.begin(), features.end(), [&](const Features& f) { return f.quantity == quantity; });
+  return of == features.end() ? std::vector<double>{} : of->centre;
+}
+
+/// The narrow knots, and the wide ones that none of them is near: the way goes on where samples are too few for narrow ones.
+std::vector<double> with_those_beyond(const std::vector<double>& narrow, const std::vector<double>& wide) {
+  if (narrow.size() < 2) return narrow;
+  double apart = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < narrow.size(); ++i) apart = std::min(apart, narrow[i] - narrow[i - 1]);
+  std::vector<double> out = narrow;
+  for (const double knot : wide) {
+    const bool near = std::any_of(narrow.begin(), narrow.end(), [&](double n) { return std::abs(n - knot) < 1.5 * apart; });
+    if (!near) out.push_back(knot);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 }  // namespace
 
 std::vector<int> parameters_in_columns(const FilterEstimate& estimate, const Eigen::MatrixXd& columns) {
@@ -132,15 +151,22 @@ std::vector<EffectPlace> effects_of_unknown_form(const UnknownCurve& unexplained
 
 std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families) {
   const EffectSpec& spec = effect.spec();
+  constexpr double rare = 0.01;
   const SystemSpec& system = work.estimate.model.system->spec();
-  const std::vector<Features> features = features_of(work.estimate, work.force, hats_of_unknown_curves);
+  std::map<int, std::vector<Features>> features;  // by the number of their hats
+  const std::vector<Features>& usual = features[hats_of_unknown_curves] = features_of(work.estimate, work.force, hats_of_unknown_curves);
   std::vector<UnknownCurve> curves = unknown_curves(work);
+  const bool any_significant =
+      std::any_of(curves.begin(), curves.end(), [&](const UnknownCurve& curve) { return sidak(curve.p_value, families) < rare; });
+  if (!any_significant) curves = with_narrow_ones(std::move(curves), narrow_curves(work));
   std::erase_if(curves, [&](const UnknownCurve& curve) { return curve.kind != kind_of(spec) || !can_be_read(curve, system); });
   std::stable_sort(curves.begin(), curves.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
   std::vector<Candidate> out;
   for (const UnknownCurve& curve : curves) {
-    const auto hats = std::find_if(features.begin(), features.end(), [&](const Features& f) { return f.quantity == curve.quantity; });
-    if (hats == features.end()) continue;
+    std::vector<Features>& all = features[curve.hats];
+    if (all.empty()) all = features_of(work.estimate, work.force, curve.hats);
+    const auto hats = std::find_if(all.begin(), all.end(), [&](const Features& f) { return f.quantity == curve.quantity; });
+    if (hats == all.end()) continue;
     const Eigen::MatrixXd f = with_powers(hats->f, work.force.quantities().col(curve.quantity_index));
     const Eigen::MatrixXd ahead = with_powers(hats->ahead, work.force.quantities_ahead().col(curve.quantity_index));
     const Eigen::MatrixXd columns = work.force.columns_at(curve.kind, curve.index, f, ahead);
@@ -151,6 +177,7 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
     c.ports = {curve.port};
     c.score = c.predicted_drop = curve.result.chi2;
     c.dof = curve.result.dof;
+    if (!curve.centre.empty()) c.knots = with_those_beyond(curve.centre, centres_of(usual, curve.quantity));
     c.p_value = sidak(curve.p_value, families);
     for (const int p : parameters_in_columns(work.estimate, columns)) {
       const Parameter& held = work.estimate.model.parameters[p];

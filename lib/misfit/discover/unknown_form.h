@@ -19,7 +19,8 @@ namespace misfit {
                                                                const SystemSpec& system, const Registry& registry);
 
 /// An effect of unknown form at each place where unknown_curves() looks for one, the most significant first: candidates with `roles`, and
-/// `fixed_in_model` the parameters that its curve can take over. `families`: that their p-values are corrected for.
+/// `fixed_in_model` the parameters that its curve can take over; where none is significant, with those of narrow_curves() among them, which
+/// have `knots`. `families`: that their p-values are corrected for.
 [[nodiscard]] std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families);
 
 /// Free parameters of the model, numbers only, which these columns (all samples × hats) describe beside the other free ones and which are

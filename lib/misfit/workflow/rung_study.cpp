@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "misfit/core/error.h"
+#include "misfit/core/units.h"
 #include "misfit/data/study_edit.h"
 #include "misfit/model/provisional.h"
 #include "misfit/workflow/ladder.h"
@@ -29,6 +32,23 @@ std::string free_name(const std::vector<EffectRequest>& effects, const std::stri
   const auto taken = [&] { return std::any_of(effects.begin(), effects.end(), [&](const EffectRequest& e) { return e.name == name; }); };
   for (int number = 2; taken(); ++number) name = kind + "_" + std::to_string(number);
   return name;
+}
+
+double least_distance(const std::vector<double>& rising) {
+  double out = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < rising.size(); ++i) out = std::min(out, rising[i] - rising[i - 1]);
+  return out;
+}
+
+/// The study's text with the knots of the effect's curve of unknown form where discovery found it [SI]; in the unit that is shown, to a
+/// hundredth of the distance of two.
+std::string with_knots(const std::string& text, const std::string& effect, const Curve& curve, const std::vector<double>& knots) {
+  const double shown = convert_difference(1.0, curve.of_unit, display_unit(curve.of_unit)), apart = shown * least_distance(knots);
+  const int digits = std::clamp(2 - static_cast<int>(std::floor(std::log10(apart))), 0, std::numeric_limits<double>::max_digits10);
+  std::string list;
+  for (const double knot : knots) list += fmt::format("{}{:.{}f}", list.empty() ? "" : ", ", shown * knot, digits);
+  return with_value(with_value(text, {"curves", effect, "of"}, fmt::format("\"{}\"", curve.of)), {"curves", effect, "knots"},
+                    "[" + list + "]");
 }
 
 /// Where to start: shapes where discovery's scan found most (from a wrong sector or frequency no refit finds the right one), and if it
@@ -133,15 +153,18 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   const std::string name = free_name(model.effects, effect);
   ModelRequest with = model;
   with.effects.push_back({name, effect, roles, {}});
-  try {
-    std::ignore = provisional_model(with, session.registry);
-  } catch (const InputError& error) {
-    throw InputError("effect '" + effect + "' does not suit this model: " + error.what());
-  }
+  const auto assembled = [&] {
+    try {
+      return provisional_model(with, session.registry);
+    } catch (const InputError& error) {
+      throw InputError("effect '" + effect + "' does not suit this model: " + error.what());
+    }
+  }();
   const auto start = from ? start_found(found, *from) : EffectStart{};
   const std::string text = text_for_folder(session.study, folder);
   return edited(session, [&] {
-    const std::string added = with_effect(text, effect_line(name, effect, roles, start));
+    std::string added = with_effect(text, effect_line(name, effect, roles, start));
+    if (from && from->knots.size() > 1) added = with_knots(added, name, assembled.curves.back(), from->knots);
     return from ? with_fixed(added, session, with, from->fixed_in_model) : added;
   });
 }
