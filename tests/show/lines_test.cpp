@@ -48,7 +48,7 @@ TEST(LineOfAFit, SaysWhatItLeavesOut) {
                   "b and c are collinear: a combination of them is known much better", "and so on"};
   EXPECT_EQ(line_of(fit),
             "a 1.00 ± 0.10 V, b 1.00 ± 0.10 V, c 1.00 ± 0.10 V, d 1.00 ± 0.10 V, and 2 more; random force not distinguishable from 0; "
-            "! a ends at its bound, 1 V; the innovations of w in 'bench' are not white; and 2 more");
+            "! a ends at its bound, 1 V; the innovations of w in 'bench' are not white; and 2 more (--verbose)");
   fit.driven = true;
   EXPECT_THAT(line_of(fit), testing::HasSubstr("random force 0.02 V/s"));
 }

@@ -284,6 +284,13 @@ std::optional<Section> DescribedSection::table(std::string_view key) const {
   return read(key, [&](const Section& section, const Key& /*k*/) { return section.table(key); });
 }
 
+void DescribedSection::refuse_unknown() const {
+  const std::vector<std::string> known = group_->names();
+  for (const std::string& key : keys()) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) fail(key, "no such key" + suggest(key, known));
+  }
+}
+
 void DescribedSection::finish() const {
   for (const Key& key : group_->keys) {
     if (!key.formerly.empty() && has(key.formerly)) fail(key.formerly, "this key is called " + key.name + " now");

@@ -83,6 +83,8 @@ class DescribedSection : public Section {
   [[nodiscard]] std::optional<std::vector<std::string>> texts(std::string_view key) const;  ///< each once; among the choices, if any
   [[nodiscard]] std::optional<Section> table(std::string_view key) const;
 
+  /// InputError for a key that the description does not have: before one that is needed is missed, since that may be the one.
+  void refuse_unknown() const;
   /// As Section::finish; InputError too for a key without any of those that it needs.
   void finish() const;
 

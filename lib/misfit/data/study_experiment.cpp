@@ -16,11 +16,12 @@ using config::Section;
 
 constexpr const char* validation_forms = "\"last 25 %\", [t0, t1] in seconds, or a file (.csv, .mat, .ulg, …) is expected";
 
-void read_source(const Section& section, const Study& study, ExperimentStudy& experiment) {
+void read_source(const DescribedSection& section, const Study& study, ExperimentStudy& experiment) {
   experiment.track = existing_file(section, "track", study.folder);
   experiment.video = existing_file(section, "video", study.folder);
   experiment.data = existing_file(section, "data", study.folder);
   const int given = (experiment.track ? 1 : 0) + (experiment.video ? 1 : 0) + (experiment.data ? 1 : 0);
+  if (given == 0) section.refuse_unknown();
   if (given != 1) section.fail("", "exactly one of track, video and data is needed, " + std::to_string(given) + " are given");
 }
 

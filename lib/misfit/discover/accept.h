@@ -3,27 +3,11 @@
 #include <optional>
 #include <vector>
 
-#include "misfit/discover/refit.h"
+#include "misfit/discover/ranked.h"
 #include "misfit/discover/unknown_curves.h"
 #include "misfit/discover/verdict.h"
 
 namespace misfit {
-
-/// A library effect in the ranking of a search, best first.
-struct RankedCandidate {
-  const ScreeningResult* screening = nullptr;
-  Candidate candidate;
-  std::optional<Refit> refit;
-  bool refit_begun = false;
-  double log_p = 0.0;  ///< of the refit where there is one
-  /// Its refit is a limiting case that is no longer the effect: a part of one that exists as a whole only, a memory longer than the
-  /// recording, a step of an output of which the measurements are no multiples, an edge outside of the operating range. Its drop says
-  /// nothing of the effect then.
-  bool degenerate = false;
-  bool alone_gains_nothing = false;  ///< refused for its held-out gain, and for nothing else
-  /// Drop of the refit beside which no second effect was found to hold: not looked for again until there is another refit.
-  std::optional<double> no_second_at;
-};
 
 /// What a search works on, for testing again in another model.
 struct SearchContext {

@@ -140,22 +140,8 @@ class Search {
   }
 
   void rank() {
-    for (const auto& s : screening_) {
-      RankedCandidate entry;
-      entry.screening = &s;
-      entry.log_p = s.log_p;
-      entry.candidate = named_candidate(s, families_);
-      ranked_.push_back(std::move(entry));
-    }
-    sort_ranked();
-  }
-
-  void sort_ranked() {
-    std::stable_sort(ranked_.begin(), ranked_.end(), [](const RankedCandidate& a, const RankedCandidate& b) {
-      if (a.candidate.absorbed != b.candidate.absorbed) return b.candidate.absorbed;
-      if (a.refit.has_value() != b.refit.has_value()) return a.refit.has_value();
-      return a.log_p < b.log_p;
-    });
+    for (const auto& s : screening_) ranked_.push_back(ranked_as_screened(s, families_));
+    sort_by_evidence(ranked_);
   }
 
   /// The largest predicted drop of those that may be significant; infinity: there is none.
@@ -168,10 +154,6 @@ class Search {
   }
   bool may_be_significant(const RankedCandidate& e) const { return !e.candidate.absorbed && e.candidate.p_value < 5.0 * options_.p_accept; }
   bool significant(const RankedCandidate& e) const { return !e.candidate.absorbed && e.candidate.p_value < options_.p_accept; }
-  static bool has_shapes(const RankedCandidate& e) {
-    const CandidateModel& c = *e.screening->candidate_model;
-    return c.cells.size() > 1 || c.frequency >= 0;
-  }
   bool none_accepted() const {
     return std::none_of(ranked_.begin(), ranked_.end(), [](const RankedCandidate& e) { return e.candidate.accepted; });
   }
@@ -193,10 +175,15 @@ class Search {
     }});
   }
 
-  /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum.
+  /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum: a tenth of what another one
+  /// explains, there.
   void refit_the_significant_with_shapes() {
-    refit_wave(
-        {.begin = [this](const RankedCandidate& e) { return significant(e) && has_shapes(e) ? e.screening : nullptr; }, .name = "_shapes"});
+    constexpr double most_more = 10.0;
+    const double explained = ranks().size() > 1 ? 0.0 : largest_drop(ranked_, options_.p_accept);
+    const auto may_explain_as_much = [&](const RankedCandidate& e) {
+      return significant(e) && has_shapes(e) && most_more * e.candidate.predicted_drop > explained;
+    };
+    refit_wave({.begin = [&](const RankedCandidate& e) { return may_explain_as_much(e) ? e.screening : nullptr; }, .name = "_shapes"});
   }
 
   /// The forces that explain most of the free run, each at least a fifth of it, begun from there: down to the first that one step ahead has
@@ -234,7 +221,7 @@ class Search {
       e.candidate.group.clear();
       if (begin(e) != nullptr && e.refit && !significant_in_screening(e)) require_of_free_run(e);
     }
-    sort_ranked();
+    sort_by_evidence(ranked_);
     return true;
   }
 
@@ -264,10 +251,13 @@ class Search {
   };
 
   /// A refit that ends far below what the score promised, or nowhere, has failed: that is no evidence against its effect. What else is
-  /// free in the estimate may be where it is to make up for the missing effect.
+  /// free in the estimate may be where it is to make up for the missing effect. Not of those that promise less than half of what another
+  /// one explains, past which they would not be chosen.
   void refit_what_fell_short() {
+    const double explained = largest_drop(ranked_, options_.p_accept);
     const auto fell_short = [&](const RankedCandidate& e) {
       if (!e.refit_begun || e.candidate.absorbed || !significant_in_screening(e)) return false;
+      if (2.0 * e.screening->result.chi2 < explained) return false;
       return e.refit ? e.refit->drop < least_of_score * e.screening->result.chi2 : !was_cut_off(e);
     };
     refit_again({.wanted = fell_short, .name = "_short"});
@@ -311,7 +301,7 @@ class Search {
     }
     if (!gained) return false;
     for (RankedCandidate& e : ranked_) e.candidate.group.clear();
-    sort_ranked();
+    sort_by_evidence(ranked_);
     return true;
   }
 
@@ -346,7 +336,7 @@ class Search {
       chosen[k]->refit = std::move(refits[k].refit);
       store_refit(*chosen[k]);
     }
-    sort_ranked();
+    sort_by_evidence(ranked_);
     return true;
   }
 
@@ -358,28 +348,12 @@ class Search {
       e.refit.reset();
       return;
     }
-    c.actual_drop = e.refit->drop;
-    c.held_out_gain.reset();  // that of an earlier refit
-    e.log_p = log_drop_tail(*e.screening->candidate_model, e.refit->drop) + std::log(e.screening->cells_effective);
-    c.p_value = family_wise_p(e.log_p, families_);
-    c.parameters = e.refit->parameters;
-    c.roles = e.refit->moved.value_or(e.screening->candidate_model->roles);
-    c.also = e.refit->also.empty() ? std::nullopt : std::optional(e.refit->also);
-    c.holds = e.refit->holds.empty() ? std::nullopt : std::optional(e.refit->holds);
-    c.free = e.refit->free;
-    c.fixed = e.refit->fixed;
-    const FilterEstimate& there = e.refit->estimate;
-    c.refit_values = there.model.values();
-    c.refit_log_noise = pack(there.noise, there.model.system->spec(), there.reference).value;
-    c.force = random_force(there);
+    describe_refit(e, families_);
   }
 
   /// Where nothing else shows as much: a force or an error that changes over shorter ways.
   std::optional<Unexplained> what_is_narrow() {
-    double shown = 0.0;
-    for (const RankedCandidate& e : ranked_) {
-      if (e.refit && significant(e)) shown = std::max(shown, e.refit->drop);
-    }
+    const double shown = largest_drop(ranked_, options_.p_accept);
     std::vector<UnknownCurve> narrow = narrow_curves(scores());
     if (narrow.empty()) return std::nullopt;
     families_ += static_cast<double>(narrow.size());

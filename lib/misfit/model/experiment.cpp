@@ -134,9 +134,9 @@ class Reader {
   [[noreturn]] void refuse_empty(const std::string& role, const std::string& name) const {
     if (table_.line.empty()) throw RunError("experiment '" + shown(study_.name) + "': " + role + " " + name + " has no value at all");
     const Column* column = table_.find(header(name));
-    throw InputError(line(rows_.front()), (column == nullptr ? role + " '" : "column '" + shown(column->name) + "', " + role + " '") +
-                                              shown(name) + "' of experiment '" + shown(study_.name) +
-                                              "', has no value at all from here to the end: it needs at least one number");
+    const std::string what = role + " '" + shown(name) + "' of experiment '" + shown(study_.name) + "'";
+    throw InputError(line(rows_.front()), (column == nullptr ? what : "column '" + shown(column->name) + "', " + what + ",") +
+                                              " has no value at all from here to the end: it needs at least one number");
   }
   Source line(std::size_t row) const { return {table_.source, row < table_.line.size() ? table_.line[row] : 0, 0}; }
 

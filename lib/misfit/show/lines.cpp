@@ -31,12 +31,12 @@ std::vector<std::string> residuals(const Fit& fit) {
   return out;
 }
 
-/// The first `most`, and how many more there are.
-std::vector<std::string> first_of(std::vector<std::string> all, std::size_t most) {
+/// The first `most`, how many more there are, and where.
+std::vector<std::string> first_of(std::vector<std::string> all, std::size_t most, const char* where = "") {
   if (all.size() <= most) return all;
   const std::size_t more = all.size() - most;
   all.resize(most);
-  all.push_back(fmt::format("and {} more", more));
+  all.push_back(fmt::format("and {} more{}", more, where));
   return all;
 }
 
@@ -63,7 +63,7 @@ std::vector<std::string> warnings(const Fit& fit) {
       warning.erase(0, end + 3);  // of which experiment: in full
     out.push_back(warning.substr(0, std::min(warning.find(": "), warning.find(" ("))));
   }
-  return first_of(std::move(out), most);
+  return first_of(std::move(out), most, " (--verbose)");
 }
 
 /// Without those that cannot be distinguished from 0, where others can.
