@@ -1,6 +1,8 @@
 // misfit init: a file of columns becomes a study, or words say why not.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "tests/apps/program.h"
 
 namespace {
@@ -52,6 +54,32 @@ TEST(Init, AMeasuredRateWithoutAUnitHasThatOfWhatItIsTheRateOf) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("column 'omega' names no unit: taken as rad/s"));
   EXPECT_EQ(first_line(out / "swing.csv"), "t[s],theta[rad],omega[rad/s]");
+}
+
+/// An axis under a controller, which sees the axis through noise: its current is predicted by the position as well as the other way round.
+std::string axis() {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::string text = "t_s,current_A,pos_mm\n";
+  double x = 0.0, v = 0.0, wanted = 0.0;
+  for (int k = 0; k < 800; ++k) {
+    if (k % 100 == 0) wanted = 20.0 * normal(random);
+    const double seen = x + 0.02 * normal(random), current = 0.05 * (wanted - seen) - 0.004 * v;
+    text += std::to_string(0.01 * k) + "," + std::to_string(current) + "," + std::to_string(seen) + "\n";
+    v += 0.01 * (900.0 * current - 2.0 * v);
+    x += 0.01 * v;
+  }
+  return text;
+}
+
+TEST(Init, TheOnlyCurrentBesideAPositionDrivesIt) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.write("axis.csv", axis());
+  const Outcome outcome = run({"init", data.string(), "--out", (folder.path() / "s").string(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found.at("columns").at(1).at("use"), "input") << found.at("columns").at(1).at("why");
+  EXPECT_EQ(found.at("columns").at(2).at("use"), "output");
 }
 
 /// What init writes is a study that fits as it stands, and its model follows the swing better than a constant.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/core/units.h"
 #include "misfit/fit/regression/influence.h"
 #include "misfit/recording/column_facts.h"
 
@@ -66,11 +67,33 @@ void take_outdoors(RecordingSurvey& survey) {
   }
 }
 
+bool is_in(const ColumnSurvey& c, const char* unit) { return c.unit != "-" && parse_unit(c.unit).same_dimension(parse_unit(unit)); }
+
+/// The only current beside positions, angles and speeds drives them (a motor, a coil), where nothing else in the file does. Under a
+/// controller the motion predicts the current, too, so that the data do not say which drives which.
+void take_current_beside_motion(RecordingSurvey& survey) {
+  ColumnSurvey* current = nullptr;
+  bool moves = false;
+  for (ColumnSurvey& c : survey.columns) {
+    if (c.use == ColumnUse::input) return;
+    if (c.use != ColumnUse::output && c.use != ColumnUse::rate) continue;
+    const bool motion = is_in(c, "m") || is_in(c, "m/s") || is_in(c, "rad") || is_in(c, "rad/s");
+    if (!motion && (current != nullptr || c.use == ColumnUse::rate || c.chosen_by_user || !is_in(c, "A"))) return;
+    moves |= motion;
+    if (!motion) current = &c;
+  }
+  if (current == nullptr || !moves) return;
+  current->use = ColumnUse::input;
+  current->is_measured_input = true;
+  current->why = "the only current, beside what moves";
+}
+
 }  // namespace
 
 void take_measured_inputs(RecordingSurvey& survey) {
   take_what_nothing_predicts(survey);
   take_outdoors(survey);
+  take_current_beside_motion(survey);
 }
 
 }  // namespace misfit
