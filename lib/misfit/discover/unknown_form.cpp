@@ -91,7 +91,24 @@ std::vector<double> centres_of(const std::vector<Features>& features, const std:
   return of == features.end() ? std::vector<double>{} : of->centre;
 }
 
-/// The narrow knots, and the wide ones that none of them is near: the way goes on where samples are too few for narrow ones.
+/// Of the hats that are three sigmas from 0, and of two on either side of each; all, where none is.
+std::vector<double> centres_where_it_acts(const UnknownCurve& curve) {
+  constexpr double clearly = 3.0;
+  constexpr std::ptrdiff_t beside = 2;
+  const auto count = std::ssize(curve.centre);
+  std::vector<bool> kept(curve.centre.size(), false);
+  for (std::ptrdiff_t i = 0; i < std::min<std::ptrdiff_t>(count, curve.result.amplitude.size()); ++i) {
+    if (!(std::abs(curve.result.amplitude[i]) > clearly * curve.result.sigma[i])) continue;
+    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(i - beside, 0); k <= std::min(i + beside, count - 1); ++k) kept[k] = true;
+  }
+  std::vector<double> out;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    if (kept[i]) out.push_back(curve.centre[i]);
+  }
+  return out.size() < 2 ? curve.centre : out;
+}
+
+/// The narrow knots, and the wide ones that none of them is near.
 std::vector<double> with_those_beyond(const std::vector<double>& narrow, const std::vector<double>& wide) {
   if (narrow.size() < 2) return narrow;
   double apart = std::numeric_limits<double>::infinity();
@@ -177,7 +194,7 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
     c.ports = {curve.port};
     c.score = c.predicted_drop = curve.result.chi2;
     c.dof = curve.result.dof;
-    if (!curve.centre.empty()) c.knots = with_those_beyond(curve.centre, centres_of(usual, curve.quantity));
+    if (!curve.centre.empty()) c.knots = with_those_beyond(centres_where_it_acts(curve), centres_of(usual, curve.quantity));
     c.p_value = sidak(curve.p_value, families);
     for (const int p : parameters_in_columns(work.estimate, columns)) {
       const Parameter& held = work.estimate.model.parameters[p];
