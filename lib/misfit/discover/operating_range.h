@@ -29,8 +29,8 @@ class OperatingRange {
   /// range() of the quantity on whose values a shape is an edge (ScanSpec::over names it plainly); nullopt: it is none, or not known.
   [[nodiscard]] std::optional<Range> range_of_edge(const BoundEffect& effect, std::size_t coefficient) const;
 
-  /// Lower bound of a shape: its own, or what the filter resolves of the quantity that it smooths; of a time that its effect keeps fixed and
-  /// that is looked for in sampling intervals, a fifth of the shortest that is looked for.
+  /// Lower bound of a shape: its own, or what the filter resolves of the quantity that it smooths; of a time that its effect keeps fixed
+  /// and that is looked for in sampling intervals, a fifth of the shortest that is looked for.
   [[nodiscard]] double lower_bound(const BoundEffect& effect, std::size_t coefficient) const;
   /// Values of a shape to look at: that of the measurements (OfMeasurements) where they show it, else those of its ScanSpec, kept within
   /// its bounds; the default alone where `over` names what is not known.
