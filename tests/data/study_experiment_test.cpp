@@ -11,7 +11,7 @@ using Experiments = StudyFolder;
 TEST_F(Experiments, AnExperimentHasOneSourceAndAnOwnName) {
   expect_parts(error_with("[[experiment]]\nname = \"a\"\n"), {"study.toml:3", "exactly one of track, video and data", "0 are given"});
   expect_parts(error_with("[[experiment]]\nname = \"a\"\ndta = \"a.csv\"\n"),
-               {"study.toml:5", "dta", "no such key", "did you mean 'data'"});
+               {"study.toml:5", "dta", "unknown key 'dta'", "did you mean 'data'"});
   expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\ndata = \"other.csv\"\n"), {"2 are given"});
   expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\n[[experiment]]\ndata = \"track.csv\"\n"),
                {"two experiments are called 'track'", "line 3"});

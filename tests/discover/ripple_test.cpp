@@ -9,53 +9,17 @@
 
 #include "misfit/discover/wave_scan.h"
 #include "tests/discover/found.h"
+#include "tests/discover/slide.h"
 
 namespace misfit {
 namespace {
 
 using namespace testing_models;
 
-const std::string slide_text = R"toml(
-[states]
-x = { unit = "m", scale = 0.05 }
-v = { unit = "m/s", scale = 0.2, rate_of = "x" }
-[inputs]
-F = { unit = "N", hold = "zero_order" }
-[parameters]
-k = { unit = "N/m", value = 30.0, free = true }
-c = { unit = "N s/m", value = 5.0, free = true }
-m = { unit = "kg", value = 2.0 }
-[equations]
-x = "v"
-v = "(F - k*x - c*v)/m"
-[outputs]
-x = { unit = "m", noise = 2e-4 }
-)toml";
-
 constexpr double pitch = 0.02, push = 1.5;  // [m], [m/s^2]
 
-/// By leapfrog steps of 0.1 ms, which share nothing with sim/; sampled every 20 ms.
-Signals slide(double size, unsigned seed) {
-  constexpr double step = 0.02, fine = 1e-4;
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  Signals s;
-  s.name = "slide";
-  s.measured = {{"x", "m", {}, 0.0}};
-  s.inputs = {{"F", "N", {}, 0.0}};
-  double x = 0.0, v = 0.0, force = 0.0;
-  for (int n = 0; n < 1500; ++n) {
-    if (n % 40 == 0) force = 4.0 * normal(random);
-    s.t.push_back(step * n);
-    s.inputs[0].values.push_back(force);
-    s.measured[0].values.push_back(x + 2e-4 * normal(random));
-    for (int i = 0; i < 200; ++i) {
-      x += 0.5 * fine * v;
-      v += fine * ((force - 40.0 * x - 8.0 * v) / 2.0 + size * std::cos(2.0 * std::numbers::pi * x / pitch + 0.6));
-      x += 0.5 * fine * v;
-    }
-  }
-  return s;
+Signals with_a_bent_screw(double size, unsigned seed) {
+  return slide({.seed = seed}, [size](double x) { return size * std::cos(2.0 * std::numbers::pi * x / pitch + 0.6); });
 }
 
 const std::string motor_text = R"toml(
@@ -103,7 +67,7 @@ void expect_within(const Estimate& found, double truth, double least_share) {
 }
 
 TEST(AForceThatRecursAlongTheWay, IsFoundWithItsSpacing) {
-  const Discovery found = Found(slide(push, 5), slide_text).discover_missing();
+  const Discovery found = Found(with_a_bent_screw(push, 5), slide_text).discover_missing();
   ASSERT_FALSE(found.candidates.empty());
   const Candidate& first = found.candidates.front();
   EXPECT_EQ(first.effect, "ripple") << found.verdict;
@@ -115,7 +79,7 @@ TEST(AForceThatRecursAlongTheWay, IsFoundWithItsSpacing) {
 }
 
 TEST(AForceThatRecursAlongTheWay, IsNotFoundWhereThereIsNone) {
-  const Discovery found = Found(slide(0.0, 6), slide_text).discover_missing();
+  const Discovery found = Found(with_a_bent_screw(0.0, 6), slide_text).discover_missing();
   EXPECT_EQ(found.outcome, SearchOutcome::none_missing) << found.verdict;
 }
 

@@ -63,6 +63,20 @@ std::pair<double, double> scanned(const Signals& recorded, const std::string& ki
   return {found->cells.front().front(), found->cells.back().front()};
 }
 
+/// Shorter ones look alike in samples 0.02 s apart, and take ever more steps.
+TEST(Scan, HowFastALimitedRateFollowsIsNotLookedForFarBelowTheSamplingInterval) {
+  const auto systems = registry_with(carriage_text);
+  const ModelRequest request = request_of("text");
+  const std::vector<Signals> signals = {carriage(0.0)};
+  const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
+  const std::vector<CandidateModel> all = candidate_models(estimate, request, *systems, nullptr);
+  const auto found = std::find_if(all.begin(), all.end(), [](const CandidateModel& c) { return c.effect == "rate_limit"; });
+  ASSERT_NE(found, all.end());
+  const Parameter& follow_time = found->model.parameters[found->shapes[1]];
+  EXPECT_NEAR(follow_time.lower, 0.1 * 0.02, 1e-6);
+  EXPECT_LT(found->model.parameters[found->shapes[0]].lower, 1e-9) << "a rate has no such bound";
+}
+
 TEST(Scan, OfWhatDependsOnHowFarAMotionGoesDoesNotDependOnWhere) {
   for (const double middle : {0.0, 2.0}) {
     const auto [least, most] = scanned(carriage(middle), "backlash");

@@ -9,9 +9,9 @@
 namespace misfit {
 namespace {
 
-/// Its number in discovery is C_n/sin(alpha_T), which is no start of C_n.
-TEST(RungStudy, ACoefficientThatEntersOverASineIsACurveThere) {
-  TemporaryFolder folder;
+/// The study of a rung with `found` on a flight with gravity, a static moment and a pitch damping.
+std::string rung_with(const Candidate& found) {
+  const TemporaryFolder folder;
   folder.write("d.csv", "t[s],P_y[px],P_z[px]\n0,100,200\n0.02,101,201\n0.04,102,202\n0.06,103,203\n0.08,104,204\n");
   folder.write("study.toml", R"toml([study]
 name = "flight"
@@ -44,11 +44,29 @@ pitch_damping = {}
   Registry registry;
   misfit_models_register(registry);
   const Session session({.study = (folder.path() / "study.toml").string(), .out = (folder.path() / "out").string()}, registry);
+  return study_with_effect(session, found.effect, found, folder.path());
+}
+
+/// Its number in discovery is C_n/sin(alpha_T), which is no start of C_n.
+TEST(RungStudy, ACoefficientThatEntersOverASineIsACurveThere) {
   Candidate found;
   found.effect = "side_moment";
   found.actual_drop = 100.0;
   found.parameters["C_n"] = {0.0115, 0.002, "-"};
-  EXPECT_THAT(study_with_effect(session, "side_moment", found, folder.path()), testing::HasSubstr("\nside_moment = {}\n"));
+  EXPECT_THAT(rung_with(found), testing::HasSubstr("\nside_moment = {}\n"));
+}
+
+TEST(RungStudy, KnotsThatDiscoveryFoundAreInTheUnitThatIsShown) {
+  Candidate found;
+  found.effect = "unknown_force";
+  found.roles = {{"of", "alpha_T"}, {"port", "lateral_moment"}};
+  found.knots = {0.1, 0.2, 0.25};
+  const std::string study = rung_with(found);
+  EXPECT_THAT(study, testing::HasSubstr("unknown_force.of = \"alpha_T\"\n"));
+  EXPECT_THAT(study, testing::HasSubstr("unknown_force.knots = [5.73, 11.46, 14.32]\n"))
+      << "180/pi times as much, to a hundredth of 0.05 rad";
+  found.knots = {};
+  EXPECT_THAT(rung_with(found), testing::Not(testing::HasSubstr("knots")));
 }
 
 }  // namespace

@@ -317,12 +317,15 @@ void Section::finish() const { finish(state_->asked); }
 
 void Section::finish(const std::vector<std::string>& valid) const {
   for (const std::string& key : keys()) {
-    if (state_->read.count(key) > 0) continue;
-    const std::string what = state_->node(key)->is_table() && state_->path.empty() ? "unknown section [" : "unknown key '";
-    const std::string end = what.back() == '[' ? "]" : "'";
-    const std::string inside = state_->path.empty() ? "" : " in [" + shown(state_->path) + "]";
-    throw InputError(where(key), what + shown(key) + end + inside + suggest(key, valid));
+    if (state_->read.count(key) == 0) fail_unknown(key, valid);
   }
+}
+
+void Section::fail_unknown(const std::string& key, const std::vector<std::string>& valid) const {
+  const std::string what = state_->node(key)->is_table() && state_->path.empty() ? "unknown section [" : "unknown key '";
+  const std::string end = what.back() == '[' ? "]" : "'";
+  const std::string inside = state_->path.empty() ? "" : " in [" + shown(state_->path) + "]";
+  throw InputError(where(key), what + shown(key) + end + inside + suggest(key, valid));
 }
 
 void Section::fail(std::string_view key, const std::string& message) const {

@@ -61,6 +61,7 @@ class Section {
   void finish() const;                                       ///< this table only; sub-tables finish themselves
   void finish(const std::vector<std::string>& valid) const;  ///< with these as the names in the message
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+  [[noreturn]] void fail_unknown(const std::string& key, const std::vector<std::string>& valid) const;
   /// The same with the value as the file has it: "section.key = VALUE: expected".
   [[noreturn]] void fail_value(std::string_view key, const std::string& expected) const;
 

@@ -287,7 +287,7 @@ std::optional<Section> DescribedSection::table(std::string_view key) const {
 void DescribedSection::refuse_unknown() const {
   const std::vector<std::string> known = group_->names();
   for (const std::string& key : keys()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) fail(key, "no such key" + suggest(key, known));
+    if (std::find(known.begin(), known.end(), key) == known.end()) fail_unknown(key, known);
   }
 }
 

@@ -77,7 +77,7 @@ class Search {
     const std::vector<bool> twin = twins();
     families_ = static_cast<double>(std::count(twin.begin(), twin.end(), false)) + static_cast<double>(count_of_unknown_curves(scores()));
     if (const Effect& asked = registry_.effect(options_.only); asked.spec().has_unknown_form()) {
-      out_.candidates = candidates_of_unknown_form(scores(), asked, families_);
+      out_.candidates = candidates_of_unknown_form(scores(), asked, families_, options_.p_accept);
       return std::move(out_);
     }
     std::erase_if(candidates_.models, [&](const CandidateModel& s) { return s.effect != options_.only; });
@@ -357,6 +357,7 @@ class Search {
     std::vector<UnknownCurve> narrow = narrow_curves(scores());
     if (narrow.empty()) return std::nullopt;
     families_ += static_cast<double>(narrow.size());
+    out_.tried.push_back("unknown curves of shorter ways: " + std::to_string(narrow.size()));
     const auto best = std::min_element(narrow.begin(), narrow.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
     if (!is_significant(*best, context()) || !(best->worth() > shown)) return std::nullopt;
     const UnknownCurve found = *best;

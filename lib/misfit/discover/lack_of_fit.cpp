@@ -112,9 +112,7 @@ std::optional<UnknownCurve> mostly_left(const FilterEstimate& with, std::vector<
   const std::vector<UnknownCurve> after = unknown_curves(scores.work());
   std::sort(screened.begin(), screened.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.order() < b.order(); });
   const auto is_left = [&](const UnknownCurve& curve) {
-    const auto same = std::find_if(after.begin(), after.end(), [&](const UnknownCurve& c) {
-      return c.kind == curve.kind && c.port == curve.port && c.quantity == curve.quantity;
-    });
+    const auto same = std::find_if(after.begin(), after.end(), [&](const UnknownCurve& c) { return is_of_the_same(c, curve); });
     return same != after.end() && sidak(same->p_value, static_cast<double>(after.size())) < options.p_accept &&
            same->worth() > most_left * curve.worth();
   };

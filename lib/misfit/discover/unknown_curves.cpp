@@ -107,6 +107,7 @@ UnknownCurve unknown_curve_at(const ScoreWork& work, const UnknownPlace& place, 
   UnknownCurve out = unknown_form(work, name_of(place, work), f, work.force.columns_at(place.kind, place.index, f.f, f.ahead));
   out.kind = place.kind;
   out.index = place.index;
+  out.centre = f.centre;
   return out;
 }
 
@@ -151,10 +152,6 @@ UnknownTests tests_of_unknown_curves(const ScoreWork& work) {
   return out;
 }
 
-bool is_of_the_same(const UnknownCurve& a, const UnknownCurve& b) {
-  return a.kind == b.kind && a.port == b.port && a.quantity == b.quantity;
-}
-
 /// The best of those of one quantity (features of its past) at one place, corrected for their number. In the order of the list.
 std::vector<UnknownCurve> best_of_each(const std::vector<UnknownCurve>& all) {
   std::vector<UnknownCurve> out;
@@ -176,7 +173,18 @@ std::vector<UnknownCurve> best_of_each(const std::vector<UnknownCurve>& all) {
   return out;
 }
 
+std::vector<UnknownCurve> curves_of(const ScoreWork& work, const std::vector<UnknownTest>& tests, const ProgressFn& progress = {}) {
+  std::vector<UnknownCurve> out(tests.size());
+  run_jobs(
+      out.size(), work.threads, [&](std::size_t k) { out[k] = unknown_curve_at(work, tests[k].place, *tests[k].features); }, progress);
+  return out;
+}
+
 }  // namespace
+
+bool is_of_the_same(const UnknownCurve& a, const UnknownCurve& b) {
+  return a.kind == b.kind && a.port == b.port && a.quantity == b.quantity;
+}
 
 std::string past_read_by(const SystemSpec& system, const BoundEffect& effect) {
   const int q = effect.quantities.empty() ? -1 : effect.quantities.front();
@@ -193,32 +201,26 @@ std::size_t count_of_unknown_curves(const ScoreWork& work) {
 
 std::vector<UnknownCurve> unknown_curves(const ScoreWork& work, const ProgressFn& progress) {
   const UnknownTests tests = tests_of_unknown_curves(work);
-  std::vector<UnknownCurve> all(tests.tests.size());
-  run_jobs(
-      all.size(), work.threads, [&](std::size_t k) { all[k] = unknown_curve_at(work, tests.tests[k].place, *tests.tests[k].features); },
-      progress);
-  return best_of_each(all);
+  return best_of_each(curves_of(work, tests.tests, progress));
 }
 
 std::vector<UnknownCurve> narrow_curves(const ScoreWork& work) {
   constexpr std::array narrow = {24, 72};
+  std::vector<UnknownPlace> places = places_of_unknown_curves(work);
+  std::erase_if(places, [](const UnknownPlace& place) { return place.kind == PortKind::quantity; });
   std::vector<UnknownCurve> all;
-  for (const int most : narrow) {
-    const std::vector<Features> features = features_of(work.estimate, work.force, most);
+  for (const int hats : narrow) {
+    const std::vector<Features> features = features_of(work.estimate, work.force, hats);
     std::vector<UnknownTest> tests;
     for (const Features& f : features) {
-      for (const UnknownPlace& place : places_of_unknown_curves(work)) {
-        if (f.index >= 0 && place.kind != PortKind::quantity) tests.push_back({&f, place});
+      for (const UnknownPlace& place : places) {
+        if (f.index != kTime) tests.push_back({&f, place});
       }
     }
-    const std::size_t first = all.size();
-    all.resize(first + tests.size());
-    run_jobs(tests.size(), work.threads, [&](std::size_t k) {
-      UnknownCurve& curve = all[first + k];
-      curve = unknown_curve_at(work, tests[k].place, *tests[k].features);
-      curve.hats = most;
-      curve.centre = tests[k].features->centre;
-    });
+    for (UnknownCurve& curve : curves_of(work, tests)) {
+      curve.hats = hats;
+      all.push_back(std::move(curve));
+    }
   }
   return best_of_each(all);
 }

@@ -33,10 +33,10 @@ struct UnknownCurve {
   int index = -1;                     ///< of the place among those of its kind (ForceSensitivity::columns_at())
   std::string port, quantity;
   int quantity_index = -1;
-  std::string other;   ///< second quantity of a surface; empty: a curve
-  std::string memory;  ///< what stands for a memory of unknown form in place of this, in words; empty: nothing
-  int hats = hats_of_unknown_curves;
-  std::vector<double> centre;  ///< of the hats that are left, where they are narrower than usual [unit of the quantity]; else empty
+  std::string other;                  ///< second quantity of a surface; empty: a curve
+  std::string memory;                 ///< what stands for a memory of unknown form in place of this, in words; empty: nothing
+  int hats = hats_of_unknown_curves;  ///< looked for
+  std::vector<double> centre;         ///< of the hats that have samples [unit of the quantity]; of a curve only
   ScoreResult result;
   double log_p = 0.0, p_value = 1.0;
 
@@ -51,6 +51,9 @@ struct UnknownCurve {
   [[nodiscard]] std::string quantities() const;  ///< "v", "v and u"
   [[nodiscard]] std::string in_words() const;    ///< "a change of c that depends on x"
 };
+
+/// At one place, of one quantity.
+[[nodiscard]] bool is_of_the_same(const UnknownCurve& a, const UnknownCurve& b);
 
 /// Of every quantity, and of the past of every input, on every dynamic port, and as errors of every output; of every quantity as changes
 /// of the parameters (parameters_of_unknown_curves()) of which `work.force` has columns.

@@ -86,9 +86,10 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return out;
 }
 
-std::vector<double> centres_of(const std::vector<Features>& features, const std::string& quantity) {
+/// nullptr: there are none.
+const Features* features_named(const std::vector<Features>& features, const std::string& quantity) {
   const auto of = std::find_if(features.begin(), features.end(), [&](const Features& f) { return f.quantity == quantity; });
-  return of == features.end() ? std::vector<double>{} : of->centre;
+  return of == features.end() ? nullptr : &*of;
 }
 
 /// Of the hats that are three sigmas from 0, and of two on either side of each; all, where none is.
@@ -166,24 +167,25 @@ std::vector<EffectPlace> effects_of_unknown_form(const UnknownCurve& unexplained
   return out;
 }
 
-std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families) {
+std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families, double p_accept) {
   const EffectSpec& spec = effect.spec();
-  constexpr double rare = 0.01;
   const SystemSpec& system = work.estimate.model.system->spec();
   std::map<int, std::vector<Features>> features;  // by the number of their hats
   const std::vector<Features>& usual = features[hats_of_unknown_curves] = features_of(work.estimate, work.force, hats_of_unknown_curves);
   std::vector<UnknownCurve> curves = unknown_curves(work);
-  const bool any_significant =
-      std::any_of(curves.begin(), curves.end(), [&](const UnknownCurve& curve) { return sidak(curve.p_value, families) < rare; });
-  if (!any_significant) curves = with_narrow_ones(std::move(curves), narrow_curves(work));
+  if (std::none_of(curves.begin(), curves.end(), [&](const UnknownCurve& c) { return sidak(c.p_value, families) < p_accept; })) {
+    std::vector<UnknownCurve> narrow = narrow_curves(work);
+    families += static_cast<double>(narrow.size());
+    curves = with_narrow_ones(std::move(curves), std::move(narrow));
+  }
   std::erase_if(curves, [&](const UnknownCurve& curve) { return curve.kind != kind_of(spec) || !can_be_read(curve, system); });
   std::stable_sort(curves.begin(), curves.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
   std::vector<Candidate> out;
   for (const UnknownCurve& curve : curves) {
     std::vector<Features>& all = features[curve.hats];
     if (all.empty()) all = features_of(work.estimate, work.force, curve.hats);
-    const auto hats = std::find_if(all.begin(), all.end(), [&](const Features& f) { return f.quantity == curve.quantity; });
-    if (hats == all.end()) continue;
+    const Features* hats = features_named(all, curve.quantity);
+    if (hats == nullptr) continue;
     const Eigen::MatrixXd f = with_powers(hats->f, work.force.quantities().col(curve.quantity_index));
     const Eigen::MatrixXd ahead = with_powers(hats->ahead, work.force.quantities_ahead().col(curve.quantity_index));
     const Eigen::MatrixXd columns = work.force.columns_at(curve.kind, curve.index, f, ahead);
@@ -194,7 +196,8 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
     c.ports = {curve.port};
     c.score = c.predicted_drop = curve.result.chi2;
     c.dof = curve.result.dof;
-    if (!curve.centre.empty()) c.knots = with_those_beyond(centres_where_it_acts(curve), centres_of(usual, curve.quantity));
+    const Features* wide = curve.hats == hats_of_unknown_curves ? nullptr : features_named(usual, curve.quantity);
+    if (wide != nullptr) c.knots = with_those_beyond(centres_where_it_acts(curve), wide->centre);
     c.p_value = sidak(curve.p_value, families);
     for (const int p : parameters_in_columns(work.estimate, columns)) {
       const Parameter& held = work.estimate.model.parameters[p];
