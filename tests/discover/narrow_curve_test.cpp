@@ -33,6 +33,22 @@ TEST(AForceAtOnePlaceOfTheWay, IsFoundAsACurveOfIt) {
   EXPECT_EQ(found.unexplained_port, "dv/dt");
 }
 
+/// Eight hats over the whole way see something of it too, but hardly tell a force from an error of the potentiometer.
+TEST(AForceAtOnePlaceOfTheWay, IsAForceAlsoWhereWideCurvesShowIt) {
+  const Discovery found = Found(beside_a_magnet(5.0, 5), slide_text).discover_missing();
+  EXPECT_EQ(found.outcome, SearchOutcome::unknown_form) << found.verdict;
+  EXPECT_EQ(found.unexplained_quantity, "x");
+  EXPECT_EQ(found.unexplained_port, "dv/dt");
+}
+
+/// A ripple along the way, and dry friction, explain a part of it, on what is held out too.
+TEST(AForceAtOnePlaceOfTheWay, IsNoEffectThatExplainsLessThanHalfOfIt) {
+  const Discovery found = Found(beside_a_magnet(8.0, 5), slide_text).discover_missing();
+  EXPECT_EQ(found.outcome, SearchOutcome::unknown_form) << found.verdict;
+  EXPECT_EQ(found.unexplained_quantity, "x");
+  EXPECT_EQ(found.unexplained_port, "dv/dt");
+}
+
 TEST(AForceAtOnePlaceOfTheWay, HasKnotsAsCloseAsItIsNarrowAndOthersAllAlongTheWay) {
   const Discovery found = Found(beside_a_magnet(2.0, 5), slide_text).discover_missing({.only = "unknown_force"});
   ASSERT_FALSE(found.candidates.empty());

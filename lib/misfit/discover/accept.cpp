@@ -198,10 +198,21 @@ std::vector<UnknownCurve> larger_than(const RankedCandidate& choice, const std::
   return out;
 }
 
+/// What may be missing beside, or in place of, every candidate.
+struct Curves {
+  const std::vector<UnknownCurve>& unknown;
+  const std::vector<UnknownCurve>& narrow;  ///< most of what is sharp is a little better described by these: they are to show much more
+};
+
+std::optional<UnknownCurve> first_above(double least, const std::vector<UnknownCurve>& curves) {
+  const auto found = std::find_if(curves.begin(), curves.end(), [least](const UnknownCurve& curve) { return curve.worth() > least; });
+  return found == curves.end() ? std::nullopt : std::optional(*found);
+}
+
 /// Step 5: a choice is not made past one that explains more than twice as much. Such an imitation is chosen in its place if a second effect
 /// explains what it leaves; for others, one that is refused, and an unknown form, nothing is.
 Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice& choice, const std::vector<Imitation>& imitations,
-                             const std::vector<UnknownCurve>& unknown, HeldOut& held_out, const SearchContext& context) {
+                             const Curves& curves, HeldOut& held_out, const SearchContext& context) {
   const double least = 2.0 * choice.at->refit->drop;
   const auto past = [&](const std::string& larger, const std::string& which) -> Choice {
     choice.at->candidate.why = "explains less than half of what " + larger + " does; " + which;
@@ -220,13 +231,14 @@ Choice not_past_a_larger_one(std::vector<RankedCandidate>& ranked, const Choice&
     }
     return past(label(e->candidate), "the larger one cannot be accepted: " + e->candidate.why);
   }
-  for (const UnknownCurve& curve : unknown) {
-    if (!(curve.worth() > least)) continue;
-    Choice none = past(curve.label(), "no known effect describes the larger one");
-    none.larger = curve;
+  for (const auto* list : {&curves.unknown, &curves.narrow}) {
+    const auto larger = first_above(least, *list);
+    if (!larger) continue;
+    Choice none = past(larger->label(), "no known effect describes the larger one");
+    none.larger = larger;
     return none;
   }
-  if (auto larger = mostly_left(choice.at->refit->estimate, larger_than(*choice.at, unknown, context), context.options)) {
+  if (auto larger = mostly_left(choice.at->refit->estimate, larger_than(*choice.at, curves.unknown, context), context.options)) {
     choice.at->candidate.why = "explains less than " + larger->label() +
                                " would, of which more than half is left with it in the model; no known effect describes the larger one";
     return {.at = ranked.end(), .larger = std::move(larger)};
@@ -329,11 +341,11 @@ Unexplained unexplained_by(const UnknownCurve& curve, const std::vector<UnknownC
 }
 
 std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
-                                       const SearchContext& context) {
+                                       const SearchContext& context, const std::vector<UnknownCurve>& narrow) {
   std::vector<Imitation> imitations;
   HeldOut held_out(context.estimate, context.experiments, context.options.threads);
   Choice choice = first_without_lack_of_fit(ranked, imitations, held_out, context);
-  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, imitations, unknown, held_out, context)
+  choice = choice.at != ranked.end() ? not_past_a_larger_one(ranked, choice, imitations, {unknown, narrow}, held_out, context)
                                      : first_with_a_second_effect(ranked, imitations, held_out, context);
   if (choice.at != ranked.end()) choice = or_a_better_pair(ranked, choice, held_out, context);
   const bool accepted = choice.at != ranked.end();

@@ -31,9 +31,10 @@ inline constexpr double least_of_score = 0.5;
 ///   8. Group (`find_groups`): those that these data cannot distinguish from the first. An accepted one stands first from here on
 ///      (`move_to_front`), and every other refitted one has the reason why it is not accepted (`explain_others`).
 ///   9. Nothing accepted: what remains may depend on a quantity in a way that no named effect describes (`unexplained_force`).
-/// Acceptance is marked in `ranked` (Candidate::accepted, of the first one); returned is what step 9 finds.
+/// Acceptance is marked in `ranked` (Candidate::accepted, of the first one); returned is what step 9 finds. `narrow`: curves that follow
+/// what changes over short ways, past which no choice is made either; of step 5 alone.
 [[nodiscard]] std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, const std::vector<UnknownCurve>& unknown,
-                                                     const SearchContext& context);
+                                                     const SearchContext& context, const std::vector<UnknownCurve>& narrow = {});
 
 /// What is missing where it is this curve: one of `unknown`.
 [[nodiscard]] Unexplained unexplained_by(const UnknownCurve& curve, const std::vector<UnknownCurve>& unknown, const SearchContext& context);

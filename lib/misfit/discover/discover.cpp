@@ -51,12 +51,12 @@ class Search {
       refit_what_the_free_run_shows();
       refit_what_fell_short();
       if (options_.refits && !ranks().first()) return {};
-      unexplained = accept_best(ranked_, unknown_, context());
-      if (none_accepted() && refit_the_other_nominated()) unexplained = accept_best(ranked_, unknown_, context());
+      unexplained = what_is_accepted();
+      if (none_accepted() && refit_the_other_nominated()) unexplained = what_is_accepted();
       const bool more_to_try = !is_of_unknown_form(ranked_, unknown_, context());
-      if (more_to_try && none_accepted() && refit_the_other_significant_ones()) unexplained = accept_best(ranked_, unknown_, context());
-      if (more_to_try && none_accepted() && refit_afresh()) unexplained = accept_best(ranked_, unknown_, context());
-      if (!unexplained && none_accepted()) unexplained = what_is_narrow();
+      if (more_to_try && none_accepted() && refit_the_other_significant_ones()) unexplained = what_is_accepted();
+      if (more_to_try && none_accepted() && refit_afresh()) unexplained = what_is_accepted();
+      if (none_accepted()) unexplained = or_what_is_narrow(std::move(unexplained));
       test_fixed_parameters();
     } catch (const TimeLimitReached& limit) {
       spent = limit.what();
@@ -77,7 +77,7 @@ class Search {
     const std::vector<bool> twin = twins();
     families_ = static_cast<double>(std::count(twin.begin(), twin.end(), false)) + static_cast<double>(count_of_unknown_curves(scores()));
     if (const Effect& asked = registry_.effect(options_.only); asked.spec().has_unknown_form()) {
-      out_.candidates = candidates_of_unknown_form(scores(), asked, families_, options_.p_accept);
+      out_.candidates = candidates_of_unknown_form(scores(), asked, families_);
       return std::move(out_);
     }
     std::erase_if(candidates_.models, [&](const CandidateModel& s) { return s.effect != options_.only; });
@@ -135,6 +135,7 @@ class Search {
     if (ranks_started() > 1) all_ranks.emplace();
     screening_ = screen(scores(), candidates_.models, part(0.0, end_of_screen));
     unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
+    narrow_ = narrow_curves(scores());
     families_ = static_cast<double>(screening_.size() + unknown_.size());
     rank();
   }
@@ -351,18 +352,26 @@ class Search {
     describe_refit(e, families_);
   }
 
-  /// Where nothing else shows as much: a force or an error that changes over shorter ways.
-  std::optional<Unexplained> what_is_narrow() {
+  std::optional<Unexplained> what_is_accepted() { return accept_best(ranked_, unknown_, context(), narrow_); }
+
+  /// A force or an error that changes over shorter ways, where nothing else shows as much.
+  std::optional<Unexplained> or_what_is_narrow(std::optional<Unexplained> wide) {
+    if (narrow_.empty()) return wide;
+    families_ += static_cast<double>(narrow_.size());
+    out_.tried.push_back("unknown curves of shorter ways: " + std::to_string(narrow_.size()));
+    const auto best = std::min_element(narrow_.begin(), narrow_.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
+    if (is_significant(*best, context()) && shows_more_than(*best, wide)) wide = unexplained_by(*best, unknown_, context());
+    if (wide && wide->curve && wide->curve->hats != hats_of_unknown_curves) unknown_ = with_narrow_ones(std::move(unknown_), narrow_);
+    return wide;
+  }
+
+  /// Than every refit; and than a curve of usual width at least as clearly as two effects are told apart, or than what remains with the
+  /// best effect by as much as an effect is not chosen past another one.
+  bool shows_more_than(const UnknownCurve& narrow, const std::optional<Unexplained>& wide) const {
     const double shown = largest_drop(ranked_, options_.p_accept);
-    std::vector<UnknownCurve> narrow = narrow_curves(scores());
-    if (narrow.empty()) return std::nullopt;
-    families_ += static_cast<double>(narrow.size());
-    out_.tried.push_back("unknown curves of shorter ways: " + std::to_string(narrow.size()));
-    const auto best = std::min_element(narrow.begin(), narrow.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
-    if (!is_significant(*best, context()) || !(best->worth() > shown)) return std::nullopt;
-    const UnknownCurve found = *best;
-    unknown_ = with_narrow_ones(std::move(unknown_), std::move(narrow));
-    return unexplained_by(found, unknown_, context());
+    if (!wide) return narrow.worth() > shown;
+    if (!wide->curve) return narrow.worth() > 2.0 * shown;
+    return narrow.worth() > shown && is_clearly_better(narrow, *wide->curve);
   }
 
   void list_unknown() {
@@ -415,7 +424,7 @@ class Search {
   std::optional<ScoreTest> calm_score_;            ///< there
   std::vector<ScreeningResult> calm_screening_;    ///< there
   std::vector<const ScreeningResult*> nominated_;  ///< of these, the best first
-  std::vector<UnknownCurve> unknown_;
+  std::vector<UnknownCurve> unknown_, narrow_;
   std::vector<RankedCandidate> ranked_;
   std::vector<std::string> unfinished_;  ///< effects whose refits were cut off
   double families_ = 1.0;

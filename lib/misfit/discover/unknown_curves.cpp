@@ -225,10 +225,12 @@ std::vector<UnknownCurve> narrow_curves(const ScoreWork& work) {
   return best_of_each(all);
 }
 
+bool is_clearly_better(const UnknownCurve& narrow, const UnknownCurve& usual) { return narrow.order() < usual.order() - 0.5 * tied_drops; }
+
 std::vector<UnknownCurve> with_narrow_ones(std::vector<UnknownCurve> usual, std::vector<UnknownCurve> narrow) {
   for (UnknownCurve& curve : narrow) {
     const auto same = std::find_if(usual.begin(), usual.end(), [&](const UnknownCurve& c) { return is_of_the_same(c, curve); });
-    if (same != usual.end() && curve.log_p < same->log_p) *same = std::move(curve);
+    if (same != usual.end() && is_clearly_better(curve, *same)) *same = std::move(curve);
   }
   return usual;
 }

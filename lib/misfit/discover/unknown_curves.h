@@ -62,9 +62,11 @@ struct UnknownCurve {
 
 /// What changes over shorter ways than unknown_curves() can follow (a detent, a magnet beside the way, a worn place of a potentiometer): of
 /// every quantity of the system, as a force and as an error of an output, with 24 and with 72 hats, the better of the two corrected for
-/// both. Slower by much than all of unknown_curves(): for where these and all effects show nothing.
+/// both. What describes every sharp effect a little better than itself: for where no effect explains what is missing.
 [[nodiscard]] std::vector<UnknownCurve> narrow_curves(const ScoreWork& work);
-/// `usual` curves, and in place of those of the same quantity at the same place the narrow ones that are more significant.
+/// By more than a drop of tied_drops.
+[[nodiscard]] bool is_clearly_better(const UnknownCurve& narrow, const UnknownCurve& usual);
+/// `usual` curves, and in place of those of the same quantity at the same place the narrow ones that are clearly better.
 [[nodiscard]] std::vector<UnknownCurve> with_narrow_ones(std::vector<UnknownCurve> usual, std::vector<UnknownCurve> narrow);
 
 /// Those of `all` that explain about the same as `curve` (p-values apart by no more than a drop of tied_drops), where neither explains

@@ -167,17 +167,14 @@ std::vector<EffectPlace> effects_of_unknown_form(const UnknownCurve& unexplained
   return out;
 }
 
-std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families, double p_accept) {
+std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families) {
   const EffectSpec& spec = effect.spec();
   const SystemSpec& system = work.estimate.model.system->spec();
   std::map<int, std::vector<Features>> features;  // by the number of their hats
   const std::vector<Features>& usual = features[hats_of_unknown_curves] = features_of(work.estimate, work.force, hats_of_unknown_curves);
-  std::vector<UnknownCurve> curves = unknown_curves(work);
-  if (std::none_of(curves.begin(), curves.end(), [&](const UnknownCurve& c) { return sidak(c.p_value, families) < p_accept; })) {
-    std::vector<UnknownCurve> narrow = narrow_curves(work);
-    families += static_cast<double>(narrow.size());
-    curves = with_narrow_ones(std::move(curves), std::move(narrow));
-  }
+  std::vector<UnknownCurve> narrow = narrow_curves(work);
+  families += static_cast<double>(narrow.size());
+  std::vector<UnknownCurve> curves = with_narrow_ones(unknown_curves(work), std::move(narrow));
   std::erase_if(curves, [&](const UnknownCurve& curve) { return curve.kind != kind_of(spec) || !can_be_read(curve, system); });
   std::stable_sort(curves.begin(), curves.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
   std::vector<Candidate> out;

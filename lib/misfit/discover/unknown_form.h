@@ -19,10 +19,9 @@ namespace misfit {
                                                                const SystemSpec& system, const Registry& registry);
 
 /// An effect of unknown form at each place where unknown_curves() looks for one, the most significant first: candidates with `roles`, and
-/// `fixed_in_model` the parameters that its curve can take over; where none is significant, with those of narrow_curves() among them, which
-/// have `knots`. `families`: that their p-values are corrected for, besides the number of narrow ones.
-[[nodiscard]] std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families,
-                                                                double p_accept);
+/// `fixed_in_model` the parameters that its curve can take over; where one of narrow_curves() is clearly better, that one, which has
+/// `knots`. `families`: that their p-values are corrected for, besides the number of narrow ones.
+[[nodiscard]] std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const Effect& effect, double families);
 
 /// Free parameters of the model, numbers only, which these columns (all samples × hats) describe beside the other free ones and which are
 /// not described by those alone: 1 − R² < 0.01. A curve of the same quantity and such a parameter could not both be estimated: constants
