@@ -47,7 +47,7 @@ class Search {
       leave_out(twins(), candidates_.models);
       screen_all();
       refit_the_best();
-      refit_the_significant_with_shapes();
+      refit_the_significant_beyond_a_step();
       refit_what_the_free_run_shows();
       refit_what_fell_short();
       if (options_.refits && !ranks().first()) return {};
@@ -176,13 +176,13 @@ class Search {
     }});
   }
 
-  /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum: a tenth of what another one
-  /// explains, there.
-  void refit_the_significant_with_shapes() {
+  /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum, nor one of a sign that a sensor
+  /// loses, or not: a tenth of what another one explains, there.
+  void refit_the_significant_beyond_a_step() {
     constexpr double most_more = 10.0;
     const double explained = ranks().size() > 1 ? 0.0 : largest_drop(ranked_, options_.p_accept);
     const auto may_explain_as_much = [&](const RankedCandidate& e) {
-      return significant(e) && has_shapes(e) && most_more * e.candidate.predicted_drop > explained;
+      return significant(e) && is_far_from_linear(e) && most_more * e.candidate.predicted_drop > explained;
     };
     refit_wave({.begin = [&](const RankedCandidate& e) { return may_explain_as_much(e) ? e.screening : nullptr; }, .name = "_shapes"});
   }

@@ -44,9 +44,11 @@ void sort_by_evidence(std::vector<RankedCandidate>& ranked) {
   });
 }
 
-bool has_shapes(const RankedCandidate& e) {
+bool is_far_from_linear(const RankedCandidate& e) {
   const CandidateModel& c = *e.screening->candidate_model;
-  return c.cells.size() > 1 || c.frequency >= 0;
+  const auto& coefficients = c.model.effects.back().effect->spec().coefficients;
+  const bool whole = std::any_of(coefficients.begin(), coefficients.end(), [](const CoefficientSpec& s) { return s.whole != 0.0; });
+  return whole || c.cells.size() > 1 || c.frequency >= 0;
 }
 
 double largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept) {

@@ -32,8 +32,9 @@ void describe_refit(RankedCandidate& e, double families);
 /// Those that the free parameters describe last, what was refitted first, then by log_p.
 void sort_by_evidence(std::vector<RankedCandidate>& ranked);
 
-/// Shapes, or a frequency, were scanned.
-[[nodiscard]] bool has_shapes(const RankedCandidate& e);
+/// Shapes, or a frequency, were scanned, or the effect exists as a whole only (CoefficientSpec::whole): one step of a linearised model says
+/// little of what it explains.
+[[nodiscard]] bool is_far_from_linear(const RankedCandidate& e);
 
 /// Of the refits below a family-wise p-value; 0: there is none.
 [[nodiscard]] double largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept);

@@ -336,9 +336,11 @@ class VerdictBuilder {
                    "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help "
                    "system)";
       }
-      const std::string next = curve != nullptr     ? command("add", curve->effect) + at_place(curve->roles)
-                               : nearest != nullptr ? add_by_hand(*nearest)
-                                                    : command("open");
+      const bool left_by_curve = std::any_of(d.unexplained_effects.begin(), d.unexplained_effects.end(),
+                                             [this](const EffectPlace& place) { return on_ladder(place); });  // between its knots, too
+      const std::string next = curve != nullptr                       ? command("add", curve->effect) + at_place(curve->roles)
+                               : nearest != nullptr && !left_by_curve ? add_by_hand(*nearest)
+                                                                      : command("open");
       effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
