@@ -47,10 +47,11 @@ class Search {
       leave_out(twins(), candidates_.models);
       screen_all();
       refit_the_best();
+      if (find_higher()) return {};
       refit_the_significant_beyond_a_step();
       refit_what_the_free_run_shows();
       refit_what_fell_short();
-      if (options_.refits && !ranks().first()) return {};
+      if (find_higher() || (options_.refits && !ranks().first())) return {};
       unexplained = what_is_accepted();
       if (none_accepted() && refit_the_other_nominated()) unexplained = what_is_accepted();
       const bool more_to_try = !is_of_unknown_form(ranked_, unknown_, context());
@@ -71,6 +72,12 @@ class Search {
     if (!spent.empty()) say_cut_off(spent, !ranked_.empty(), out_);
     return std::move(out_);
   }
+
+  /// Where the model without any effect comes higher than the estimate that the search was made at, as its refits show: run() ended there,
+  /// and the search is to be made again. nullptr: it does not.
+  const FilterEstimate* higher() const { return higher_ ? &*higher_ : nullptr; }
+  /// The estimate is the higher one of another search.
+  void do_not_look_for_higher() { higher_is_looked_for_ = false; }
 
   /// Only the effect of the options, with the drop of one step, as a candidate among all families.
   Discovery predict() {
@@ -267,6 +274,19 @@ class Search {
     return std::find(unfinished_.begin(), unfinished_.end(), effect_at(e.candidate.effect, e.candidate.roles)) != unfinished_.end();
   }
 
+  /// As higher() says: from the refits from which it was not looked for yet.
+  bool find_higher() {
+    if (!higher_is_looked_for_ || ranks().size() > 1) return false;
+    std::vector<const Refit*> refits;
+    for (RankedCandidate& e : ranked_) {
+      if (!e.refit || !(e.refit->drop > tied_drops) || e.no_higher_at == e.refit->drop) continue;
+      e.no_higher_at = e.refit->drop;
+      refits.push_back(&*e.refit);
+    }
+    higher_ = higher_without(refit_work(), refits);
+    return higher_.has_value();
+  }
+
   /// The first few significant ones: none could be accepted as it is. False: none gains.
   bool refit_afresh() {
     return refit_again(
@@ -427,9 +447,27 @@ class Search {
   std::vector<UnknownCurve> unknown_, narrow_;
   std::vector<RankedCandidate> ranked_;
   std::vector<std::string> unfinished_;  ///< effects whose refits were cut off
+  std::optional<FilterEstimate> higher_;
+  bool higher_is_looked_for_ = true;
   double families_ = 1.0;
   Discovery out_;
 };
+
+/// Made again where the model turns out to be higher without any effect than where it was fitted.
+Discovery whole_search(const FittedStudy& fitted, const DiscoverOptions& options) {
+  Search search(fitted, options);
+  Discovery out = search.run();
+  const FilterEstimate* higher = search.higher();
+  if (higher == nullptr) return out;
+  DiscoverOptions again = options;
+  if (again.refits) again.refits->digest += "_higher";
+  Search there({*higher, fitted.request, fitted.registry, fitted.experiments}, again);
+  there.do_not_look_for_higher();
+  out = there.run();
+  out.sentences.push_back("the fit of this model is not its highest: the search was made where the log-likelihood is higher by " +
+                          format_value(higher->objective - fitted.estimate.objective));
+  return out;
+}
 
 }  // namespace
 
@@ -439,8 +477,7 @@ Discovery discover(const FittedStudy& fitted, const DiscoverOptions& options) {
   const Watch watch("this round of discover", whole ? options.round_limit : 0.0);
   Discovery out;
   try {
-    Search search(fitted, options);
-    out = whole ? search.run() : search.predict();
+    out = whole ? whole_search(fitted, options) : Search(fitted, options).predict();
   } catch (const TimeLimitReached& spent) {
     say_cut_off(spent.what(), false, out);
   }

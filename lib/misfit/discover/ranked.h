@@ -21,6 +21,8 @@ struct RankedCandidate {
   bool alone_gains_nothing = false;  ///< refused for its held-out gain, and for nothing else
   /// Drop of the refit beside which no second effect was found to hold: not looked for again until there is another refit.
   std::optional<double> no_second_at;
+  /// Drop of the refit from which the model without the effect was found to be no higher than the estimate (higher_without()).
+  std::optional<double> no_higher_at;
 };
 
 /// As it was screened, among `families`.

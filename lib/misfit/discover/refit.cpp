@@ -10,6 +10,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/refit_forms.h"
+#include "misfit/discover/unknown_curves.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/inference/standard_error.h"
 
@@ -187,20 +188,21 @@ Model fresh_model(const RefitWork& work, const ScreeningResult& screening) {
   return model;
 }
 
-std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model) {
+std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model, const std::optional<FilterNoise>& given) {
   const FilterEstimate& without = work.without;
+  const FilterNoise& with = given ? *given : without.noise;
   FilterModel forced = with_random_force(model);
-  forced.set_force_time(without.noise.force_time);
+  forced.set_force_time(with.force_time);
   FilterRunner runner(forced, false);
   runner.set_parameters(forced.model.values());
   std::vector<FilterData> data;
   std::vector<FilterTrace> traces(without.data.size());
   for (std::size_t e = 0; e < without.data.size(); ++e) {
     data.push_back(filter_data_like(forced, without.data[e]));
-    if (!runner.run(data[e], without.noise, traces[e])) return std::nullopt;
+    if (!runner.run(data[e], with, traces[e])) return std::nullopt;
   }
   constexpr int steps_of_noise = 3;
-  const NoiseFit noise = fit_noise({&forced, &data, &traces}, without.noise, {without.reference, work.threads, steps_of_noise});
+  const NoiseFit noise = fit_noise({&forced, &data, &traces}, with, {without.reference, work.threads, steps_of_noise});
   return NoisyRun{-noise.minus_log_density + log_prior(model, penalties_as_of(without, model)), noise.noise};
 }
 
@@ -219,6 +221,29 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
   OneStep out{std::max(drop, screening.result.chi2), std::nullopt, there->noise};  // a step too long for the linearisation says nothing
   if (drop > 0.0) out.model = std::move(model);
   return out;
+}
+
+std::optional<FilterEstimate> higher_without(const RefitWork& work, const std::vector<const Refit*>& refits) {
+  const double least = work.without.objective + 0.5 * tied_drops;
+  std::optional<FilterStart> start;
+  double highest = least;
+  for (const Refit* refit : refits) {
+    Model model = work.without.model;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) model.parameters[i].value = refit->estimate.model.parameters[i].value;
+    const std::optional<NoisyRun> there = run_once(work, model, refit->estimate.noise);
+    if (!there || !(there->objective > highest)) continue;
+    highest = there->objective;
+    start = {std::move(model), work.without.penalties, there->noise};
+  }
+  if (!start) return std::nullopt;
+  FilterOptions options = options_like(work.without, work.threads);
+  options.noise = start->noise;
+  try {
+    FilterEstimate out = estimate_filter(start->model, start->penalties, work.experiments, options);
+    return out.objective > least ? std::optional(std::move(out)) : std::nullopt;
+  } catch (const RunError&) {  // it is not needed
+    return std::nullopt;
+  }
 }
 
 Refit unfinished(const ScreeningResult& screening, const std::string& spent, std::optional<double> drop) {

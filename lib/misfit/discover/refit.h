@@ -60,13 +60,18 @@ struct RefitWork {
 /// with a random force that hides it, and no way up may lead from there to the maximum with the effect.
 [[nodiscard]] Model fresh_model(const RefitWork& work, const ScreeningResult& screening);
 
-/// A model run once with the estimate's noise, and that noise fitted about the run in a few steps.
+/// A model run once with the estimate's noise, or another, and that noise fitted about the run in a few steps.
 struct NoisyRun {
   double objective = 0.0;
   FilterNoise noise;
 };
 /// nullopt: the model cannot be run there.
-[[nodiscard]] std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model);
+[[nodiscard]] std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model, const std::optional<FilterNoise>& noise = {});
+
+/// The model without any of these effects at a higher maximum than the estimate: what a refit changes in all else may lead there, where the
+/// effect itself explains little. Then everything that was found beside the estimate may be what it lacked itself. nullopt: from none of
+/// them does the log-likelihood come higher by more than tied_drops/2.
+[[nodiscard]] std::optional<FilterEstimate> higher_without(const RefitWork& work, const std::vector<const Refit*>& refits);
 
 /// One Gauss–Newton step of all parameters from the estimate with the effect at its screened strength: the model is run there once and the
 /// noise fitted about that run, since what is explained leaves the random force.
