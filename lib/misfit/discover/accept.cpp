@@ -84,6 +84,13 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
          counted(parameters, "new parameter needs", "new parameters need") + " more than " + format_value(least_held_out_gain(parameters));
 }
 
+/// Within what neither could be preferred for. Two lags or delays are of different states, whose beginnings are not known: what the filter
+/// assumes of each costs up to tied_drops, whichever is there.
+bool are_tied(const RankedCandidate& a, const RankedCandidate& b) {
+  const bool both_lag = a.screening->candidate_model->lags && b.screening->candidate_model->lags;
+  return std::abs(a.refit->drop - b.refit->drop) <= (both_lag ? 2.0 : 1.0) * tied_drops;
+}
+
 /// Step 8: groups the best candidate with those that these data cannot distinguish from it.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
@@ -93,7 +100,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   const double p_accept = context.options.p_accept;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
     RankedCandidate& other = ranked[k];
-    if (!other.refit || std::abs(other.refit->drop - best.refit->drop) > tied_drops) continue;
+    if (!other.refit || !are_tied(other, best)) continue;
     if (!adds_nothing(given_best, other, p_accept) || !adds_nothing(ConditionalScores(*other.refit, context), best, p_accept)) continue;
     members.push_back(&other);
   }
@@ -262,13 +269,19 @@ Choice larger_of_two(const Place at, const Pair& pair, std::vector<RankedCandida
   return {second, swapped};
 }
 
+/// The second one explains more than twice as much, but cannot be chosen itself: no choice is made past it (as in step 5).
+bool is_past_its_second(const Place at, const Pair& pair) {
+  return pair.second->refit && !pair.second->candidate.remaining && pair.second->refit->drop > 2.0 * at->refit->drop;
+}
+
 /// Step 6: the first imitation whose lack of fit a second effect removes; else the first that gains nothing by itself on what is held out,
 /// but does together with another.
 Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const std::vector<Imitation>& imitations, HeldOut& held_out,
                                   const SearchContext& context) {
   constexpr int most = 3;
   for (const Imitation& imitation : imitations) {
-    if (const auto pair = explaining_effect(*imitation.at, ranked, held_out, context)) return larger_of_two(imitation.at, *pair, ranked);
+    const auto pair = explaining_effect(*imitation.at, ranked, held_out, context);
+    if (pair && !is_past_its_second(imitation.at, *pair)) return larger_of_two(imitation.at, *pair, ranked);
   }
   int tried = 0;
   for (auto e = ranked.begin(); e != ranked.end() && e->refit && tried < most; ++e) {

@@ -260,12 +260,16 @@ class Search {
 
   /// A refit that ends far below what the score promised, or nowhere, has failed: that is no evidence against its effect. What else is
   /// free in the estimate may be where it is to make up for the missing effect. Not of those that promise less than half of what another
-  /// one explains, past which they would not be chosen.
+  /// one explains, past which they would not be chosen; where that one is a lag or a delay, less than a tenth of it: from far below their
+  /// maximum lags and delays of inputs and sensors promise little, and there they are alike.
   void refit_what_fell_short() {
-    const double explained = largest_drop(ranked_, options_.p_accept);
+    const RankedCandidate* first = with_largest_drop(ranked_, options_.p_accept);
+    const double explained = first == nullptr ? 0.0 : first->refit->drop;
+    const auto lags = [](const RankedCandidate& e) { return e.screening->candidate_model->lags; };
     const auto fell_short = [&](const RankedCandidate& e) {
       if (!e.refit_begun || e.candidate.absorbed || !significant_in_screening(e)) return false;
-      if (2.0 * e.screening->result.chi2 < explained) return false;
+      const double most_more = first != nullptr && lags(*first) && lags(e) ? 10.0 : 2.0;
+      if (most_more * e.screening->result.chi2 < explained) return false;
       return e.refit ? e.refit->drop < least_of_score * e.screening->result.chi2 : !was_cut_off(e);
     };
     refit_again({.wanted = fell_short, .name = "_short"});

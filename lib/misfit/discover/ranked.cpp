@@ -51,12 +51,18 @@ bool is_far_from_linear(const RankedCandidate& e) {
   return whole || c.cells.size() > 1 || c.frequency >= 0;
 }
 
-double largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept) {
-  double out = 0.0;
+const RankedCandidate* with_largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept) {
+  const RankedCandidate* out = nullptr;
   for (const RankedCandidate& e : ranked) {
-    if (e.refit && !e.candidate.absorbed && e.candidate.p_value < p_accept) out = std::max(out, e.refit->drop);
+    const bool counts = e.refit && !e.candidate.absorbed && e.candidate.p_value < p_accept && e.refit->drop > 0.0;
+    if (counts && (out == nullptr || e.refit->drop > out->refit->drop)) out = &e;
   }
   return out;
+}
+
+double largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept) {
+  const RankedCandidate* first = with_largest_drop(ranked, p_accept);
+  return first == nullptr ? 0.0 : first->refit->drop;
 }
 
 }  // namespace misfit

@@ -38,7 +38,9 @@ void sort_by_evidence(std::vector<RankedCandidate>& ranked);
 /// little of what it explains.
 [[nodiscard]] bool is_far_from_linear(const RankedCandidate& e);
 
-/// Of the refits below a family-wise p-value; 0: there is none.
+/// Of the refits below a family-wise p-value; nullptr: there is none.
+[[nodiscard]] const RankedCandidate* with_largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept);
+/// 0: there is none.
 [[nodiscard]] double largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept);
 
 }  // namespace misfit
