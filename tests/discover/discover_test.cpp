@@ -150,6 +150,24 @@ TEST(Verdict, StrengthsThatAreAllBelowTheirSigmaAreNotDetermined) {
   EXPECT_FALSE(undetermined_strengths(model, Eigen::MatrixXd(), {depth}).has_value()) << "nothing is known of its sigma";
 }
 
+/// A scale of the model, 0.999 of whose error is the strength's too: given that scale, the friction is 5.0 ± 0.4 N m.
+TEST(Verdict, AStrengthIsDeterminedWhereOnlyTheScaleOfTheModelIsNot) {
+  Model model = assemble(spherical({effect("strut_wake"), effect("coulomb_friction")}), registry());
+  const std::vector<int> free = model.free_parameters();
+  const auto column = [&](const std::string& name) {
+    return std::find(free.begin(), free.end(), model.find_parameter(name)) - free.begin();
+  };
+  const Eigen::Index f = column("friction"), scale = column("wake_depth");  // of another effect, as of the system
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(std::ssize(free), std::ssize(free));
+  covariance(f, f) = 64.0;
+  covariance(f, scale) = covariance(scale, f) = 0.999 * 8.0;
+  set(model, "friction", 5.0);
+  const std::vector<int> friction = {model.find_parameter("friction")};
+  EXPECT_FALSE(undetermined_strengths(model, covariance, friction).has_value());
+  covariance(f, scale) = covariance(scale, f) = 0.5 * 8.0;
+  EXPECT_TRUE(undetermined_strengths(model, covariance, friction).has_value()) << "5.0 ± 6.9 N m given the scale";
+}
+
 /// The friction planted is 25 N m, a study that says "at most 10" stops the refit there.
 TEST(Discover, DoesNotAcceptWhatEndsAtItsBound) {
   const Flight flight(fly(14.0, 32, {effect("coulomb_friction")}, {{"friction", 25.0}, {"width", 0.02}}));

@@ -187,11 +187,26 @@ class Search {
   /// loses, or not: a tenth of what another one explains, there.
   void refit_the_significant_beyond_a_step() {
     constexpr double most_more = 10.0;
-    const double explained = ranks().size() > 1 ? 0.0 : largest_drop(ranked_, options_.p_accept);
-    const auto may_explain_as_much = [&](const RankedCandidate& e) {
-      return significant(e) && is_far_from_linear(e) && most_more * e.candidate.predicted_drop > explained;
+    const RankedCandidate* first = ranks().size() > 1 ? nullptr : with_largest_drop(ranked_, options_.p_accept);
+    const auto begins = [&, most = effect_and_drop(first)](const RankedCandidate& e) {
+      return significant(e) && is_far_from_linear(e) && may_explain_as(most, e, e.candidate.predicted_drop, most_more);
     };
-    refit_wave({.begin = [&](const RankedCandidate& e) { return may_explain_as_much(e) ? e.screening : nullptr; }, .name = "_shapes"});
+    refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_shapes"});
+  }
+
+  /// What explains most so far; nothing does: drop 0.
+  struct Explained {
+    double drop = 0.0;
+    bool lags = false;
+  };
+  static Explained effect_and_drop(const RankedCandidate* e) {
+    return e == nullptr ? Explained{} : Explained{e->refit->drop, e->screening->candidate_model->lags};
+  }
+  /// An effect that promises so much may be worth `most_more` times as much. From far below their maximum lags and delays of inputs and
+  /// sensors promise little, and there they are alike: beside one of them 30 times.
+  static bool may_explain_as(const Explained& most, const RankedCandidate& e, double promised, double most_more) {
+    constexpr double of_lags = 30.0;
+    return (most.lags && e.screening->candidate_model->lags ? of_lags : most_more) * promised > most.drop;
   }
 
   /// The forces that explain most of the free run, each at least a fifth of it, begun from there: down to the first that one step ahead has
@@ -260,16 +275,12 @@ class Search {
 
   /// A refit that ends far below what the score promised, or nowhere, has failed: that is no evidence against its effect. What else is
   /// free in the estimate may be where it is to make up for the missing effect. Not of those that promise less than half of what another
-  /// one explains, past which they would not be chosen; where that one is a lag or a delay, less than a tenth of it: from far below their
-  /// maximum lags and delays of inputs and sensors promise little, and there they are alike.
+  /// one explains, past which they would not be chosen.
   void refit_what_fell_short() {
-    const RankedCandidate* first = with_largest_drop(ranked_, options_.p_accept);
-    const double explained = first == nullptr ? 0.0 : first->refit->drop;
-    const auto lags = [](const RankedCandidate& e) { return e.screening->candidate_model->lags; };
+    const Explained most = effect_and_drop(with_largest_drop(ranked_, options_.p_accept));
     const auto fell_short = [&](const RankedCandidate& e) {
       if (!e.refit_begun || e.candidate.absorbed || !significant_in_screening(e)) return false;
-      const double most_more = first != nullptr && lags(*first) && lags(e) ? 10.0 : 2.0;
-      if (most_more * e.screening->result.chi2 < explained) return false;
+      if (!may_explain_as(most, e, e.screening->result.chi2, 2.0)) return false;
       return e.refit ? e.refit->drop < least_of_score * e.screening->result.chi2 : !was_cut_off(e);
     };
     refit_again({.wanted = fell_short, .name = "_short"});

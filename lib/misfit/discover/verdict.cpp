@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "misfit/core/display.h"
@@ -92,6 +93,26 @@ std::optional<std::string> undetermined(const Model& model, const Eigen::MatrixX
   return p.name + " = " + in_display_unit(p.value, p.unit, *sigma);
 }
 
+/// The covariance of the free parameters, that of the last effect's own given all others; of the others as it is.
+Eigen::MatrixXd given_the_rest(const Model& model, const Eigen::MatrixXd& covariance) {
+  const std::vector<int> free = model.free_parameters();
+  std::vector<Eigen::Index> own, rest;
+  for (Eigen::Index c = 0; c < covariance.rows(); ++c) {
+    const auto& coefficients = model.effects.back().coefficients;
+    const bool is_own =
+        std::any_of(coefficients.begin(), coefficients.end(), [&](const BoundCoefficient& b) { return b.parameter == free[c]; });
+    (is_own ? own : rest).push_back(c);
+  }
+  Eigen::MatrixXd out = covariance;
+  if (own.empty() || rest.empty()) return out;
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+  const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd between = correlation(own, rest);
+  const Eigen::MatrixXd left = correlation(own, own) - between * correlation(rest, rest).ldlt().solve(between.transpose());
+  out(own, own) = sigma(own).asDiagonal() * left * sigma(own).asDiagonal();
+  return out;
+}
+
 void say_unexplained(const Unexplained& unexplained, const Candidate& best, Discovery& out) {
   out.unexplained_port = unexplained.port;
   out.unexplained_quantity = unexplained.quantity;
@@ -177,9 +198,11 @@ std::optional<std::string> ends_at_bound(const Model& model, const std::vector<i
 
 std::optional<std::string> undetermined_strengths(const Model& model, const Eigen::MatrixXd& covariance,
                                                   const std::vector<int>& strengths) {
+  const bool remembers = has_memory(model.effects.back().effect->spec());
+  const Eigen::MatrixXd own = remembers || covariance.size() == 0 ? covariance : given_the_rest(model, covariance);
   std::string values;
   for (const int strength : strengths) {
-    const auto value = undetermined(model, covariance, strength);
+    const auto value = undetermined(model, own, strength);
     if (!value) return std::nullopt;
     values += (values.empty() ? "" : ", ") + *value;
   }
