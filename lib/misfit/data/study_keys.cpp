@@ -368,12 +368,12 @@ KeyGroup sliding_bin_group() {
 std::vector<KeyGroup> time_groups() {
   return {{"fit", "How long estimating may take.",
        {{.name = "time_limit", .type = Type::number, .unit = "s",
-         .otherwise = "none for a fit; for a refit of discover 10 times as long as the fit before it, at least 300 s", .least = 0.0,
+         .otherwise = "none for a fit; for a refit of discover 10 times as long as the fit before it, at least 60 s", .least = 0.0,
          .above = true,
          .meaning = "Of every fit and refit: then it ends with the best values until then, and is not called converged."}}},
       {"discover", "How long a search for missing effects may take.",
        {{.name = "time_limit", .type = Type::number, .unit = "s",
-         .otherwise = "20 times that of a refit", .least = 0.0, .above = true,
+         .otherwise = "10 times that of a refit", .least = 0.0, .above = true,
          .meaning = "Of one round: then it ends with what was found, and what was not tested is named."}}}};
 }
 

@@ -30,8 +30,8 @@ Discovery search(Session& session, const std::string& only, std::function<bool(c
   options.progress = session.progress("discover");
   if (only.empty()) options.refits = {session.folder.file(refits), digest_of(inputs_of_discovery(session)), 0, session.options.threads};
   options.stop = &interrupted();
-  constexpr double refits_of_a_round = 20.0;
-  options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
+  constexpr double refits_of_a_round = 10.0;
+  options.refit_limit = session.asked_limit().value_or(usual_refit_limit(session.options, work->fit.seconds));
   options.round_limit = session.round_limit().value_or(refits_of_a_round * options.refit_limit);
   const Watch watch("discover", 0.0, session.options.listener.progress_of("discover"));
   try {

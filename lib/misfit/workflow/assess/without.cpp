@@ -61,7 +61,7 @@ Discovery discover_in(Session& session, const Without& without, DiscoverOptions 
   const auto work = filter_work(session);
   options.threads = session.options.threads;
   options.calibration = calibration ? &*calibration : nullptr;
-  options.refit_limit = session.asked_limit().value_or(usual_limit(session.options, work->fit.seconds));
+  options.refit_limit = session.asked_limit().value_or(usual_refit_limit(session.options, work->fit.seconds));
   return discover({without.estimate, without.request, session.registry, work->prepared.experiments}, options);
 }
 

@@ -156,10 +156,24 @@ Session::Session(const SessionOptions& o, const Registry& r, RunFolder::Access a
   check_small_files(study);
 }
 
-double usual_limit(const SessionOptions& options, double seconds_before) {
-  constexpr double least = 300.0, times_before = 10.0;
+namespace {
+
+double ten_times(const SessionOptions& options, double seconds_before, double least) {
+  constexpr double times_before = 10.0;
   const double threads = options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
   return std::max(least, times_before * seconds_before * std::max(threads, 1.0));
+}
+
+}  // namespace
+
+double usual_limit(const SessionOptions& options, double seconds_before) {
+  constexpr double least = 300.0;
+  return ten_times(options, seconds_before, least);
+}
+
+double usual_refit_limit(const SessionOptions& options, double seconds_before) {
+  constexpr double least = 60.0;
+  return ten_times(options, seconds_before, least);
 }
 
 StageInputs Session::inputs(const std::string& settings, const std::vector<fs::path>& files) const {

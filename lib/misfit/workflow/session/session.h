@@ -51,9 +51,11 @@ struct SessionOptions {
   Listener listener = {};
 };
 
-/// [s] For a refit, and a fit of a rung that nobody asked for by itself, where no limit is given: 10 times the processor time of the fit
+/// [s] For a fit of a rung that nobody asked for by itself, where no limit is given: 10 times the processor time of the fit
 /// before it, at least 300 s; so generous that only what would not end comes to it, on a machine that others use, too.
 [[nodiscard]] double usual_limit(const SessionOptions& options, double seconds_before);
+/// [s] For a refit of discover, the same with at least 60 s: there are many of them, and one that is cut off is named and says nothing.
+[[nodiscard]] double usual_refit_limit(const SessionOptions& options, double seconds_before);
 
 struct FilterWork;
 
