@@ -79,14 +79,14 @@ std::string part_of_effect(const FilterEstimate& estimate, const std::vector<Who
   return {};
 }
 
-/// [log-likelihood] What the whole effect may cost: as much as chance would make of a part. Of one that is the whole to 2 %, a twentieth of
-/// what it explains: so near, it is a formula that idealises, and no part.
+/// [log-likelihood] What the whole effect may cost: as much as chance would make of a part, or a hundredth of what it explains, since
+/// formulas idealise; a twentieth, where it was found to 2 % of the whole, and so is no part.
 double allowed_of_whole(const RefitWork& work, const FilterEstimate& part, const std::vector<WholeStrength>& whole) {
-  constexpr double of_a_part = 2.0, about = 0.02, of_gain = 0.05;
+  constexpr double of_a_part = 2.0, about = 0.02, of_gain = 0.01, of_gain_near = 0.05;
   const bool near = std::all_of(whole.begin(), whole.end(), [&](const WholeStrength& w) {
     return std::abs(part.model.parameters[w.parameter].value / w.value - 1.0) < about;
   });
-  return near ? std::max(of_a_part, of_gain * (part.objective - work.without.objective)) : of_a_part;
+  return std::max(of_a_part, (near ? of_gain_near : of_gain) * (part.objective - work.without.objective));
 }
 
 /// A start with the whole effect, and what it was assembled from.
