@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <tuple>
 
 #include "misfit/diagnose/features.h"
 #include "misfit/discover/candidate.h"
@@ -346,15 +347,19 @@ TEST(Accept, NothingIsChosenPastAnUnknownFormWorthTwiceAsMuch) {
   curve.result.dof = 7;
   curve.log_p = -1e3;
   curve.p_value = 1e-300;
-  const auto accepted_beside = [&](double share) {
+  const auto accepted_beside = [&](double share, bool narrow = false) {
     std::vector<RankedCandidate> ranked = {world.entry("coulomb_friction")};
     curve.result.chi2 = share * ranked[0].refit->drop + 2.0 * curve.result.dof;
-    const auto unknown = accept_best(ranked, {curve}, {world.estimate, registry(), world.signals, world.options, world.families()});
+    const SearchContext context{world.estimate, registry(), world.signals, world.options, world.families()};
+    const std::vector<UnknownCurve> none, one = {curve};
+    const auto unknown = accept_best(ranked, narrow ? none : one, context, narrow ? one : none);
     EXPECT_EQ(unknown.has_value(), !ranked[0].candidate.accepted) << ranked[0].candidate.why;
     EXPECT_TRUE(!unknown || (unknown->port == "force" && unknown->quantity == "x" && unknown->kind == PortKind::dynamic));
     return ranked[0].candidate;
   };
   EXPECT_TRUE(accepted_beside(1.9).accepted);
+  EXPECT_TRUE(accepted_beside(1.9, true).accepted);
+  EXPECT_FALSE(accepted_beside(2.1, true).accepted) << "a narrow curve stands in its way like any other";
   const Candidate passed_over = accepted_beside(2.1);
   EXPECT_FALSE(passed_over.accepted);
   EXPECT_EQ(passed_over.why, "explains less than half of what an unknown curve force(x) does; no known effect describes the larger one");
@@ -412,6 +417,20 @@ TEST(Accept, OneOfTwoIsAcceptedWhereTheOtherExplainsTheRest) {
   EXPECT_FALSE(world.accept(ranked).has_value());
   EXPECT_TRUE(ranked[0].candidate.accepted) << ranked[0].candidate.why;
   EXPECT_THAT(ranked[0].candidate.why, testing::HasSubstr("coulomb_friction explains what remains"));
+}
+
+/// The drag leaves a lack of fit that the friction removes, but the friction is only found as a part of itself.
+TEST(Accept, NothingIsChosenBesideARefusedSecondEffectThatExplainsTwiceAsMuch) {
+  const World world(record_of_cart({effect("coulomb_friction"), effect("quadratic_drag")}, {{"friction", 1.0}, {"drag", 1.5}}));
+  for (const double share : {1.9, 2.1}) {
+    std::vector<RankedCandidate> ranked = {world.entry("quadratic_drag"), world.entry("coulomb_friction")};
+    ASSERT_TRUE(leaves_something(ranked[0], world));
+    ranked[1].refit->partial = "a part";
+    ranked[1].refit->drop = share * ranked[0].refit->drop;
+    std::ignore = world.accept(ranked);
+    EXPECT_EQ(of(ranked, "quadratic_drag").accepted, share < 2.0) << share << ": " << of(ranked, "quadratic_drag").why;
+    EXPECT_FALSE(of(ranked, "coulomb_friction").accepted);
+  }
 }
 
 /// hasty_friction is the same formula: whichever comes first, the two are indistinguishable; a refused candidate before them does not

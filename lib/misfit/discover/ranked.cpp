@@ -44,6 +44,13 @@ void sort_by_evidence(std::vector<RankedCandidate>& ranked) {
   });
 }
 
+bool is_significant(const RankedCandidate& e, double p_accept) { return !e.candidate.absorbed && e.candidate.p_value < p_accept; }
+
+bool may_be_significant(const RankedCandidate& e, double p_accept) {
+  constexpr double most = 5.0;
+  return is_significant(e, most * p_accept);
+}
+
 bool is_far_from_linear(const RankedCandidate& e) {
   const CandidateModel& c = *e.screening->candidate_model;
   const auto& coefficients = c.model.effects.back().effect->spec().coefficients;
@@ -54,7 +61,7 @@ bool is_far_from_linear(const RankedCandidate& e) {
 const RankedCandidate* with_largest_drop(const std::vector<RankedCandidate>& ranked, double p_accept) {
   const RankedCandidate* out = nullptr;
   for (const RankedCandidate& e : ranked) {
-    const bool counts = e.refit && !e.candidate.absorbed && e.candidate.p_value < p_accept && e.refit->drop > 0.0;
+    const bool counts = e.refit && is_significant(e, p_accept) && e.refit->drop > 0.0;
     if (counts && (out == nullptr || e.refit->drop > out->refit->drop)) out = &e;
   }
   return out;

@@ -34,6 +34,11 @@ void describe_refit(RankedCandidate& e, double families);
 /// Those that the free parameters describe last, what was refitted first, then by log_p.
 void sort_by_evidence(std::vector<RankedCandidate>& ranked);
 
+/// Not described by the free parameters, and its family-wise p-value is below that of acceptance; or below five times that, which a refit
+/// may bring below.
+[[nodiscard]] bool is_significant(const RankedCandidate& e, double p_accept);
+[[nodiscard]] bool may_be_significant(const RankedCandidate& e, double p_accept);
+
 /// Shapes, or a frequency, were scanned, or the effect exists as a whole only (CoefficientSpec::whole): one step of a linearised model says
 /// little of what it explains.
 [[nodiscard]] bool is_far_from_linear(const RankedCandidate& e);

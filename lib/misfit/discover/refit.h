@@ -87,9 +87,9 @@ struct OneStep {
 /// out of the finite numbers; where that, too, reaches none, or one below the estimate: from the estimate with the effect in it but off,
 /// below which the search does not end. A width that ends at what the filter resolved goes on down to what it resolves now
 /// (refit_forms.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if that costs
-/// the log-likelihood at most 2: from what was found and from the best of the shapes that the screening looked at, the higher of the two. A
-/// lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a shape that may drift
-/// (CoefficientSpec::drift_of) does if the data ask for it.
+/// the log-likelihood little (fix_whole_strengths()): from what was found and from the best of the shapes that the screening looked at, the
+/// higher of the two. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a shape
+/// that may drift (CoefficientSpec::drift_of) does if the data ask for it.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.

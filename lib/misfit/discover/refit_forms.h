@@ -11,10 +11,11 @@ namespace misfit {
 /// resolves more, and the search goes on down to that, as long as the log-likelihood rises.
 void narrow_smoothings(const RefitWork& work, Refit& out);
 
-/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood allows it:
-/// from where the refit has found a part of it, and from the best of its screened shapes, beside the values of the estimate without it or
-/// the study's own: what was found may be a maximum of its own, from which no way leads to the whole. False: there was no time to try, so
-/// that a part that was found says nothing.
+/// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood falls
+/// by no more than 2, or a hundredth of what the effect explains (a twentieth, where it was found to 2 % of the whole): from where the
+/// refit has found a part of it, and from the best of its screened shapes, beside the values of the estimate without it or the study's own:
+/// what was found may be a maximum of its own, from which no way leads to the whole. False: there was no time to try, so that a part that
+/// was found says nothing.
 [[nodiscard]] bool fix_whole_strengths(const RefitWork& work, const ScreeningResult& screening, Refit& out);
 
 /// Where the effect's time constant and one of the system's may have changed places: the better order. Where these data hardly tell the two

@@ -1,0 +1,228 @@
+#include "misfit/discover/refit_waves.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "misfit/core/error.h"
+#include "misfit/core/text.h"
+#include "misfit/discover/candidate.h"
+#include "misfit/discover/conditional.h"
+#include "misfit/discover/free_run.h"
+#include "misfit/jobs/ranks.h"
+#include "misfit/math/statistics.h"
+
+namespace misfit {
+
+RefitWaves::RefitWaves(const SearchContext& context, const ScoreTest& score, const std::vector<CandidateModel>& models,
+                       std::vector<RankedCandidate>& ranked, ProgressFn progress)
+    : context_(context), score_(score), models_(models), ranked_(ranked), progress_(std::move(progress)) {}
+
+/// An effect that promises so much may be worth `most_more` times as much. From far below their maximum lags and delays of inputs and
+/// sensors promise little, and there they are alike: beside one of them 30 times. `most`: nullptr, where nothing is explained yet.
+bool RefitWaves::may_explain_as(const RankedCandidate* most, const RankedCandidate& e, double promised, double most_more) {
+  constexpr double of_lags = 30.0;
+  if (most == nullptr) return promised > 0.0;
+  const bool both_lag = most->screening->candidate_model->lags && e.screening->candidate_model->lags;
+  return (both_lag ? of_lags : most_more) * promised > most->refit->drop;
+}
+
+std::optional<FilterEstimate> RefitWaves::higher() {
+  if (ranks().size() > 1) return std::nullopt;
+  std::vector<const Refit*> refits;
+  for (RankedCandidate& e : ranked_) {
+    if (!e.refit || !(e.refit->drop > tied_drops) || e.no_higher_at == e.refit->drop) continue;
+    e.no_higher_at = e.refit->drop;
+    refits.push_back(&*e.refit);
+  }
+  return higher_without(work_from(context_.estimate, context_), refits);
+}
+
+void RefitWaves::refit_alone(const RankedCandidate& candidate) {
+  const ScreeningResult* asked = candidate.screening;
+  refit_wave({.begin = [&](const RankedCandidate& e) { return e.screening == asked ? asked : nullptr; }});
+}
+
+/// The largest predicted drop of those that may be significant; infinity: there is none.
+double RefitWaves::best_predicted() const {
+  double best = 0.0;
+  for (const auto& e : ranked_) {
+    if (may_be_significant(e, context_.options.p_accept)) best = std::max(best, e.candidate.predicted_drop);
+  }
+  return best > 0.0 ? best : std::numeric_limits<double>::infinity();
+}
+bool RefitWaves::significant(const RankedCandidate& e) const { return is_significant(e, context_.options.p_accept); }
+
+void RefitWaves::refit_the_best() {
+  const double half = 0.5 * best_predicted();
+  const bool all = ranks().size() > 1;
+  refit_wave({.begin = [&](const RankedCandidate& e) {
+    return (may_be_significant(e, context_.options.p_accept) && e.candidate.predicted_drop >= half) || (all && significant(e)) ? e.screening
+                                                                                                                               : nullptr;
+  }});
+}
+
+void RefitWaves::refit_the_significant_beyond_a_step() {
+  constexpr double most_more = 10.0;
+  const RankedCandidate* first = ranks().size() > 1 ? nullptr : with_largest_drop(ranked_, context_.options.p_accept);
+  const auto begins = [&](const RankedCandidate& e) {
+    return significant(e) && is_far_from_linear(e) && may_explain_as(first, e, e.candidate.predicted_drop, most_more);
+  };
+  refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_shapes"});
+}
+
+void RefitWaves::refit_what_the_free_run_shows() {
+  calm_ = free_run(context_.estimate, {context_.experiments, context_.options.threads});
+  if (!calm_) return;
+  calm_score_.emplace(*calm_);
+  const ForceSensitivity force = sensitivity_of_forces_and_parameters(*calm_);
+  calm_screening_ = screen({*calm_, *calm_score_, force, context_.options.threads}, models_);
+  nominated_ = forces_shown_by(*calm_, calm_screening_);
+  const auto known = std::find_if(nominated_.begin(), nominated_.end(), [this](const ScreeningResult* s) {
+    return std::any_of(ranked_.begin(), ranked_.end(), [&](const RankedCandidate& e) {
+      return e.screening->candidate_model == s->candidate_model && e.refit && significant(e);
+    });
+  });
+  refit_nominated({nominated_.begin(), ranks().size() > 1 ? nominated_.end() : known}, "_free_run");
+}
+
+bool RefitWaves::refit_the_other_nominated() {
+  if (!calm_ || ranks().size() > 1) return false;
+  return refit_nominated(nominated_, "_free_run_others");
+}
+
+bool RefitWaves::refit_nominated(const std::vector<const ScreeningResult*>& nominated, const char* name) {
+  const auto begin = [&](const RankedCandidate& e) -> const ScreeningResult* {
+    const auto found = std::find_if(nominated.begin(), nominated.end(), [&](const auto* s) {
+      return s->candidate_model == e.screening->candidate_model && !e.candidate.absorbed;
+    });
+    return found == nominated.end() ? nullptr : *found;
+  };
+  if (!refit_wave({.begin = begin, .name = name, .screened = &*calm_, .score = &*calm_score_})) return false;
+  for (RankedCandidate& e : ranked_) {
+    e.candidate.group.clear();
+    if (begin(e) != nullptr && e.refit && !significant_in_screening(e)) require_of_free_run(e);
+  }
+  sort_by_evidence(ranked_);
+  return true;
+}
+
+/// What the free run alone nominated must explain there what it promised: else its refit went elsewhere, and is not counted.
+void RefitWaves::require_of_free_run(RankedCandidate& e) {
+  const std::optional<FilterEstimate> after = free_run(e.refit->estimate, {context_.experiments, context_.options.threads});
+  if (!after || is_explained(*calm_, *after)) return;  // none: nothing is left to the random force
+  e.refit.reset();
+  e.log_p = e.screening->log_p;
+  e.candidate = named_candidate(*e.screening, context_.families);
+  e.candidate.why = "not significant: family-wise " + p_equals(e.candidate.p_value) + "; its refit does not explain the free run";
+}
+
+bool RefitWaves::significant_in_screening(const RankedCandidate& e) const {
+  return sidak(e.screening->p_value, context_.families) < context_.options.p_accept;
+}
+
+bool RefitWaves::refit_the_other_significant_ones() {
+  if (ranks().size() > 1) return false;  // refitted with the first
+  for (RankedCandidate& e : ranked_) e.candidate.group.clear();
+  return refit_wave({.begin = [this](const RankedCandidate& e) { return significant(e) ? e.screening : nullptr; }, .name = "_others"});
+}
+
+void RefitWaves::refit_what_fell_short() {
+  const RankedCandidate* most = with_largest_drop(ranked_, context_.options.p_accept);
+  const auto fell_short = [&](const RankedCandidate& e) {
+    if (!e.refit_begun || e.candidate.absorbed || !significant_in_screening(e)) return false;
+    if (!may_explain_as(most, e, e.screening->result.chi2, 2.0)) return false;
+    return e.refit ? e.refit->drop < least_of_score * e.screening->result.chi2 : !was_cut_off(e);
+  };
+  refit_again({.wanted = fell_short, .name = "_short"});
+}
+
+bool RefitWaves::was_cut_off(const RankedCandidate& e) const {
+  return std::find(unfinished_.begin(), unfinished_.end(), effect_at(e.candidate.effect, e.candidate.roles)) != unfinished_.end();
+}
+
+bool RefitWaves::refit_afresh() {
+  return refit_again(
+      {.wanted = [this](const RankedCandidate& e) { return e.refit && significant(e); }, .as_refitted = true, .name = "_afresh"});
+}
+
+/// Of the first few that are wanted. False: none gains.
+bool RefitWaves::refit_again(const Again& again) {
+  if (ranks().size() > 1) return false;
+  constexpr std::size_t most = 3;
+  std::vector<RankedCandidate*> chosen;
+  std::vector<ScreeningResult> begin;
+  for (auto& e : ranked_) {
+    if (chosen.size() == most || !again.wanted(e)) continue;
+    chosen.push_back(&e);
+    begin.push_back(again.as_refitted ? as_refitted(*e.screening, e.refit->estimate.model) : *e.screening);
+  }
+  if (chosen.empty()) return false;
+  RefitWork work = work_from(context_.estimate, context_);
+  work.afresh = true;
+  std::vector<const ScreeningResult*> effects;
+  for (const ScreeningResult& b : begin) effects.push_back(&b);
+  std::vector<SteppedRefit> refits = refitted(work, score_, effects, again.name);
+  bool gained = false;
+  for (std::size_t k = 0; k < refits.size(); ++k) {
+    Refit& refit = refits[k].refit;
+    const double before = chosen[k]->refit ? chosen[k]->refit->drop : 0.0;
+    if (!refit.ok || !(refit.drop > before + tied_drops)) continue;
+    chosen[k]->refit = std::move(refit);
+    chosen[k]->candidate.why.clear();
+    store_refit(*chosen[k]);
+    gained = true;
+  }
+  if (!gained) return false;
+  for (RankedCandidate& e : ranked_) e.candidate.group.clear();
+  sort_by_evidence(ranked_);
+  return true;
+}
+
+/// `name`: of the stored jobs. Empty on ranks other than the first.
+std::vector<SteppedRefit> RefitWaves::refitted(const RefitWork& work, const ScoreTest& score,
+                                               const std::vector<const ScreeningResult*>& effects, const char* name) {
+  std::optional<StoredJobs> stored = context_.options.refits;
+  if (stored) stored->digest += name;
+  auto refits = refit_all(work, score, effects, {stored, progress_, context_.options.stop});
+  if (!refits) throw RunError("discover: stopped before all refits were done");
+  return std::move(*refits);
+}
+
+/// False: no candidate is in it.
+bool RefitWaves::refit_wave(const Wave& wave) {
+  std::vector<RankedCandidate*> chosen;
+  std::vector<const ScreeningResult*> effects;
+  for (auto& e : ranked_) {
+    if (std::ssize(chosen) >= context_.options.max_refits) break;
+    const ScreeningResult* begin = e.refit_begun || !e.candidate.why.empty() ? nullptr : wave.begin(e);
+    if (begin == nullptr) continue;
+    e.refit_begun = true;
+    chosen.push_back(&e);
+    effects.push_back(begin);
+  }
+  if (chosen.empty()) return false;
+  RefitWork work = work_from(context_.estimate, context_);
+  work.screened = wave.screened;
+  std::vector<SteppedRefit> refits = refitted(work, wave.score == nullptr ? score_ : *wave.score, effects, wave.name);
+  for (std::size_t k = 0; k < refits.size(); ++k) {
+    if (wave.screened == nullptr) chosen[k]->candidate.predicted_drop = refits[k].predicted_drop;
+    chosen[k]->refit = std::move(refits[k].refit);
+    store_refit(*chosen[k]);
+  }
+  sort_by_evidence(ranked_);
+  return true;
+}
+
+void RefitWaves::store_refit(RankedCandidate& e) {
+  Candidate& c = e.candidate;
+  if (!e.refit->ok) {
+    c.why = e.refit->why;
+    if (e.refit->out_of_time) unfinished_.push_back(effect_at(c.effect, c.roles));
+    e.refit.reset();
+    return;
+  }
+  describe_refit(e, context_.families);
+}
+
+}  // namespace misfit
