@@ -260,12 +260,12 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const FilterEstimate& without = work.without;
   Refit out;
   out.request = screening.candidate_model->request;
-  const auto estimate_from = [&](const Model& start, const std::optional<FilterNoise>& noise) {
+  const auto estimate_from_all = [&](const std::vector<FilterStart>& starts, const std::optional<FilterNoise>& noise) {
     if (watch.spent()) return;
     FilterOptions options = options_like(without, work.threads);
     options.noise = noise;
     try {
-      FilterEstimate there = estimate_filter(start, penalties_as_of(without, start), work.experiments, options);
+      FilterEstimate there = estimate_filter(starts, work.experiments, options);
       if (!out.ok || better(there, out.estimate)) out.estimate = std::move(there);
       out.ok = true;
     } catch (const RunError& error) {
@@ -273,11 +273,19 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
     } catch (const TimeLimitReached&) {  // said below
     }
   };
+  const auto estimate_from = [&](const Model& start, const std::optional<FilterNoise>& noise) {
+    estimate_from_all({{start, penalties_as_of(without, start)}}, noise);
+  };
   const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
   if (work.afresh) {
     estimate_from(fresh_model(work, screening), std::nullopt);
   } else {
-    if (from.model) estimate_from(*from.model, from.noise);
+    if (work.rest != nullptr) {
+      const Model start = start_model(*work.rest, screening, work.registry);
+      const std::vector<Penalty> penalties = penalties_as_of(without, start);
+      estimate_from_all({{start, penalties}, {start, penalties, std::nullopt, true}}, work.rest->noise);
+    }
+    if (no_maximum() && from.model) estimate_from(*from.model, from.noise);
     if (no_maximum()) estimate_from(start_model(without, screening, work.registry), without.noise);
     const double off = without.objective + prior_of_off(*screening.candidate_model);
     if (no_maximum() || out.estimate.objective < off) estimate_from(off_model(work, screening), without.noise);

@@ -36,6 +36,8 @@ struct RefitWork {
   const FilterEstimate* screened = nullptr;
   /// Refits begin at the study's own values of what is in the estimate, and the noise is looked for anew.
   bool afresh = false;
+  /// An estimate of the same model by other measurements: refits begin at its values of all else, the effect as screened. nullptr: none.
+  const FilterEstimate* rest = nullptr;
 };
 
 /// For another model beside an estimate: its measurements and their uses, its noise to begin with, its steps of integration; roughness as
@@ -60,13 +62,13 @@ struct RefitWork {
 /// with a random force that hides it, and no way up may lead from there to the maximum with the effect.
 [[nodiscard]] Model fresh_model(const RefitWork& work, const ScreeningResult& screening);
 
-/// A model run once with the estimate's noise, or another, and that noise fitted about the run in a few steps.
+/// A model run once with the estimate's noise, or the one given, and that noise fitted about the run in a few steps.
 struct NoisyRun {
   double objective = 0.0;
   FilterNoise noise;
 };
 /// nullopt: the model cannot be run there.
-[[nodiscard]] std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model, const std::optional<FilterNoise>& noise = {});
+[[nodiscard]] std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model, const std::optional<FilterNoise>& given = {});
 
 /// The model without any of these effects at a higher maximum than the estimate: what a refit changes in all else may lead there, where the
 /// effect itself explains little. Then everything that was found beside the estimate may be what it lacked itself. nullopt: from none of
@@ -82,14 +84,14 @@ struct OneStep {
 };
 [[nodiscard]] OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningResult& screening);
 
-/// Begun afresh (RefitWork), from there alone. Else `from`: where to start, if it ended anywhere. Where no maximum is reached from there,
-/// and without it: from the estimate with the effect added to it, which an effect that the other parameters must make room for can throw
-/// out of the finite numbers; where that, too, reaches none, or one below the estimate: from the estimate with the effect in it but off,
-/// below which the search does not end. A width that ends at what the filter resolved goes on down to what it resolves now
-/// (refit_forms.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if that costs
-/// the log-likelihood little (fix_whole_strengths()): from what was found and from the best of the shapes that the screening looked at, the
-/// higher of the two. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a shape
-/// that may drift (CoefficientSpec::drift_of) does if the data ask for it.
+/// Begun afresh (RefitWork), from there alone; from another estimate, from there first. Else `from`: where to start, if it ended anywhere.
+/// Where no maximum is reached from there, and without it: from the estimate with the effect added to it, which an effect that the other
+/// parameters must make room for can throw out of the finite numbers; where that, too, reaches none, or one below the estimate: from the
+/// estimate with the effect in it but off, below which the search does not end. A width that ends at what the filter resolved goes on down
+/// to what it resolves now (refit_forms.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if that
+/// costs the log-likelihood little (fix_whole_strengths()): from what was found and from the best of the shapes that the screening looked
+/// at, the higher of the two. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a
+/// shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.

@@ -34,7 +34,7 @@ OneStep step_from_elsewhere(const RefitWork& work, const ScoreTest& score, const
 
 SteppedRefit stepped(const RefitWork& work, const ScoreTest& score, const ScreeningResult& effect) {
   try {
-    if (work.afresh) return {effect.result.chi2, refit(work, effect)};
+    if (work.afresh || work.rest != nullptr) return {effect.result.chi2, refit(work, effect)};
     const OneStep step = work.screened == nullptr ? one_step(work, score, effect) : step_from_elsewhere(work, score, effect);
     return {step.drop, refit(work, effect, step)};
   } catch (const TimeLimitReached& spent) {

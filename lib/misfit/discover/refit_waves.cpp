@@ -9,6 +9,8 @@
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/conditional.h"
 #include "misfit/discover/free_run.h"
+#include "misfit/discover/size_reading.h"
+#include "misfit/fit/regression/lost_sign.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/math/statistics.h"
 
@@ -52,6 +54,53 @@ double RefitWaves::best_predicted() const {
   return best > 0.0 ? best : std::numeric_limits<double>::infinity();
 }
 bool RefitWaves::significant(const RankedCandidate& e) const { return is_significant(e, context_.options.p_accept); }
+
+void RefitWaves::refit_where_signs_are_lost() {
+  std::vector<const ScreeningResult*> screened;
+  for (const RankedCandidate& e : ranked_) screened.push_back(e.screening);
+  for (const ScreeningResult* s : screened) {
+    const std::optional<SizeReading> reading = reads_size_alone(*s->candidate_model);
+    const auto record = reading ? with_signs(context_.experiments, reading->output) : std::nullopt;
+    if (!record) continue;
+    const std::optional<FilterEstimate> rest = fitted_to_either(record->experiments, reading->output);
+    if (!rest) continue;
+    ScreeningResult whole = *s;
+    whole.result.amplitude = reading->strengths;
+    refit_wave({.begin = [&](const RankedCandidate& e) { return e.screening == s ? &whole : nullptr; }, .name = "_signs", .rest = &*rest});
+  }
+}
+
+/// The model without any effect fitted to an output with signs, or with all of them turned, which the output does not tell apart, but the
+/// model may.
+std::optional<FilterEstimate> RefitWaves::fitted_to_either(std::vector<Signals> experiments, const std::string& output) const {
+  constexpr double clearly = 1.0;  // of the log-likelihood
+  std::optional<FilterEstimate> as_given = fitted_to(experiments);
+  for (Signals& signals : experiments) {
+    for (Signal& s : signals.measured) {
+      for (double& value : s.values) value = s.name == output ? -value : value;
+    }
+  }
+  std::optional<FilterEstimate> turned = fitted_to(experiments);
+  const bool as_given_is_better = as_given && (!turned || turned->objective < as_given->objective + clearly);
+  return as_given_is_better ? std::move(as_given) : std::move(turned);
+}
+
+/// The model without any effect fitted to other measurements; nullopt: it cannot be.
+std::optional<FilterEstimate> RefitWaves::fitted_to(const std::vector<Signals>& experiments) const {
+  const FilterEstimate& estimate = context_.estimate;
+  FilterOptions options = options_like(estimate, context_.options.threads);
+  options.verify = false;
+  options.noise.reset();  // that of sizes is far off
+  options.reference.reset();
+  const FilterStart start{estimate.model, estimate.penalties};
+  FilterStart freely = start;
+  freely.freely = true;
+  try {
+    return estimate_filter({start, freely}, experiments, options);
+  } catch (const RunError&) {
+    return std::nullopt;
+  }
+}
 
 void RefitWaves::refit_the_best() {
   const double half = 0.5 * best_predicted();
@@ -204,6 +253,7 @@ bool RefitWaves::refit_wave(const Wave& wave) {
   if (chosen.empty()) return false;
   RefitWork work = work_from(context_.estimate, context_);
   work.screened = wave.screened;
+  work.rest = wave.rest;
   std::vector<SteppedRefit> refits = refitted(work, wave.score == nullptr ? score_ : *wave.score, effects, wave.name);
   for (std::size_t k = 0; k < refits.size(); ++k) {
     if (wave.screened == nullptr) chosen[k]->candidate.predicted_drop = refits[k].predicted_drop;

@@ -19,6 +19,9 @@ class RefitWaves {
   RefitWaves(const SearchContext& context, const ScoreTest& score, const std::vector<CandidateModel>& models,
              std::vector<RankedCandidate>& ranked, ProgressFn progress);
 
+  /// Sensors that lose the sign of their output, where the measurements go better with signs (with_signs()): no score shows them, and the
+  /// model that was fitted to sizes is far off. Begun with it fitted to the measurements with signs.
+  void refit_where_signs_are_lost();
   /// Those with a predicted drop above half of the best; under mpirun, where no rank knows what another accepts, all that are significant.
   void refit_the_best();
   /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum, nor one of a sign that a sensor
@@ -50,6 +53,7 @@ class RefitWaves {
     const char* name = "";                                                ///< of its stored jobs
     const FilterEstimate* screened = nullptr;                             ///< RefitWork::screened
     const ScoreTest* score = nullptr;                                     ///< nullptr: the estimate's
+    const FilterEstimate* rest = nullptr;                                 ///< RefitWork::rest
   };
   /// Some refits once more, from the study's own values of all else.
   struct Again {
@@ -67,6 +71,8 @@ class RefitWaves {
   void require_of_free_run(RankedCandidate& e);
   bool refit_again(const Again& again);
   bool refit_wave(const Wave& wave);
+  [[nodiscard]] std::optional<FilterEstimate> fitted_to(const std::vector<Signals>& experiments) const;
+  [[nodiscard]] std::optional<FilterEstimate> fitted_to_either(std::vector<Signals> experiments, const std::string& output) const;
   std::vector<SteppedRefit> refitted(const RefitWork& work, const ScoreTest& score, const std::vector<const ScreeningResult*>& effects,
                                      const char* name);
   void store_refit(RankedCandidate& e);

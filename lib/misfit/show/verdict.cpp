@@ -59,7 +59,7 @@ class VerdictBuilder {
   }
 
   Verdict verdict() {
-    if (fit_ == nullptr) {
+    if (fit_ == nullptr && !effects_added_) {
       no_result();
     } else if (in_.discovery == nullptr) {
       if (!in_.left_out.empty()) {

@@ -9,6 +9,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/fit/filter/filter_start.h"
 #include "misfit/fit/filter/likelihood_derivatives.h"
+#include "misfit/fit/filter/mirrored_start.h"
 #include "misfit/math/bounded.h"
 #include "misfit/math/covariance.h"
 
@@ -61,6 +62,7 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
   out.reference = options.reference ? *options.reference : usual_noise(out.forced, out.data);
   out.noise = options.noise ? *options.noise : multiplied(out.reference, options.noise_factors, start);
   out.forced.set_force_time(out.noise.force_time);
+  choose_mirrored_starts(out.forced, values(), hardly_forced(out.noise, out.reference), out.data);
 }
 
 bool LikelihoodAscent::linearise() {

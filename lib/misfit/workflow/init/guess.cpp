@@ -12,6 +12,7 @@
 #include "misfit/core/unique_name.h"
 #include "misfit/core/units.h"
 #include "misfit/data/held_out_change.h"
+#include "misfit/fit/regression/lost_sign.h"
 #include "misfit/formula/syntax.h"
 #include "misfit/inference/states.h"
 #include "misfit/model/role_units.h"
@@ -150,6 +151,16 @@ void take_gains(const GuessedModel& model, const std::vector<Candidate>& others,
   }
 }
 
+/// The output with signs, where it seems to be the size alone of what moves: as measured it would look like another system.
+std::optional<std::vector<double>> values_with_signs(const Candidate& of, const GuessData& data) {
+  Signals signals;
+  signals.t = data.t;
+  signals.measured.push_back({of.column->name, "", of.values});
+  for (const GuessDriver& driver : data.drivers) signals.inputs.push_back({"", "", driver.values});
+  const std::optional<SignedRecord> record = with_signs({signals}, of.column->name);
+  return record ? std::optional(record->experiments.front().measured.front().values) : std::nullopt;
+}
+
 /// `data`: time, inputs and the outputs that may drive this one.
 GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, const Candidate& of, GuessData data) {
   GuessedOutput output;
@@ -158,6 +169,10 @@ GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, co
   output.unit = unit_in_si(c.unit);
   data.y = of.values;
   output.noise = noise_of(data.y, c, output.unit);
+  if (auto values = values_with_signs(of, data)) {
+    data.y = std::move(*values);
+    output.size_alone = true;
+  }
   for (const ColumnSurvey* r : survey.of_use(ColumnUse::rate)) {
     if (r->rate_of != c.name) continue;
     output.rate = r->name;
@@ -189,6 +204,16 @@ void note_still_inputs(const Table& table, GuessedModel& model) {
     if (changes_held_out_alone(values, 0, [&](std::size_t i) { return i >= values.size() * 3 / 4; }))
       model.remarks.push_back(fmt::format(
           "{} changes in the last quarter alone, which is held out: what it does cannot be found, hold out another part", input));
+  }
+}
+
+void note_sizes(GuessedModel& model) {
+  for (const GuessedOutput& output : model.outputs) {
+    if (!output.size_alone) continue;
+    model.remarks.push_back(fmt::format(
+        "{} is never negative, and its past predicts it far better if it changes its sign where it comes to zero: if its size alone was "
+        "measured (a rectifier, a toothed wheel), misfit discover says so; the first model is of {} with its sign",
+        output.name, output.name));
   }
 }
 
@@ -247,6 +272,7 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
                 fmt::format("a first model has at most {} outputs, {} states and {} parameters", most_guessed.outputs, most_guessed.states,
                             most_guessed.parameters),
                 model.remarks);
+  note_sizes(model);
   note_unneeded_inputs(model);
   note_still_inputs(*longest, model);
   return model;

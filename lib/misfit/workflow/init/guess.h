@@ -24,6 +24,7 @@ struct GuessedOutput {
   std::string rest_unit, rest_doc;
   std::vector<GuessedGain> gains;        ///< of what drives it
   double noise = 0.0, rate_noise = 0.0;  ///< measurement noise [unit]
+  bool size_alone = false;               ///< measured without its sign, as it seems (with_signs()); the guess is of it with signs
   LinearGuess guess;
 };
 
