@@ -115,7 +115,8 @@ void RefitWaves::refit_the_significant_beyond_a_step() {
   constexpr double most_more = 10.0;
   const RankedCandidate* first = ranks().size() > 1 ? nullptr : with_largest_drop(ranked_, context_.options.p_accept);
   const auto begins = [&](const RankedCandidate& e) {
-    return significant(e) && is_far_from_linear(e) && may_explain_as(first, e, e.candidate.predicted_drop, most_more);
+    return may_be_significant(e, context_.options.p_accept) && is_far_from_linear(e) &&
+           may_explain_as(first, e, e.candidate.predicted_drop, most_more);
   };
   refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_shapes"});
 }
