@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <fstream>
 #include <optional>
+#include <regex>
 
 #include "tests/benchmark/strangers/bench.h"
 
@@ -64,6 +65,23 @@ std::optional<double> fitted(const fs::path& study, const Bench& bench) {
   return ended.status == 0 ? loglik(study) : std::nullopt;
 }
 
+/// What the accepted candidate says of the numbers that were hidden, where it is the hidden effect: those that its `truth` starts at one of
+/// them ("limit = {limit}").
+json intervals(const Hidden& hidden, const json& candidate) {
+  json out = json::array();
+  const std::regex start(R"((\w+) = \{(\w+)\})");
+  const std::string& text = hidden.effect.truth;
+  for (std::sregex_iterator it(text.begin(), text.end(), start), end; it != end; ++it) {
+    const std::string name = (*it)[1], drawn = (*it)[2];
+    const auto truth = hidden.values.numbers.find(drawn);
+    if (truth == hidden.values.numbers.end() || !candidate["parameters"].contains(name)) continue;
+    const json& estimate = candidate["parameters"][name];
+    if (!estimate["sigma"].is_number() || !(estimate["sigma"] > 0.0)) continue;
+    out.push_back({{"name", name}, {"truth", truth->second}, {"value", estimate["value"]}, {"sigma", estimate["sigma"]}});
+  }
+  return out;
+}
+
 void judge(const World& world, const fs::path& study, json& row) {
   const json candidates = read(study / "out/candidates.json"), discovery = read(study / "out/discovery.json");
   const std::string verdict = discovery.value("verdict", "");
@@ -86,6 +104,7 @@ void judge(const World& world, const fs::path& study, json& row) {
     row["group"] = (*accepted)["group"];
     row["first"] = is_right(world, *accepted);
     row["in_group"] = row["first"];
+    if (row["first"] == true && world.kind == "effect") row["intervals"] = intervals(world.hidden.front(), *accepted);
     for (const json& c : candidates) {
       const std::string at = place_of(c), key = c["effect"];
       const bool grouped = std::any_of(row["group"].begin(), row["group"].end(), [&](const json& g) {

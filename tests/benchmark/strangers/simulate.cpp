@@ -175,6 +175,10 @@ Run calm(const World& world) {
 double si_of(const std::string& name, double value, const Effect& effect, const World& world, const Run& quiet) {
   if (effect.site == Site::plant || name == "curve" || name == "folded") return value;
   if (name == "fading") return value / (world.step * world.samples);
+  if (name == "delay" && effect.site == Site::input && world.held) {  // a held input changes where a step of the integration begins
+    const double h = world.step / quiet.parts;
+    return std::round(value * world.step / h) * h;
+  }
   if (name == "delay" || name == "lag") return value * world.step;
   const auto at = static_cast<std::size_t>(effect.index);
   if (effect.site == Site::input) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <limits>
@@ -117,6 +118,22 @@ void print_reliability(const Rows& rows) {
   }
 }
 
+/// Of the hidden numbers of effects that were named first, how many lie within two and three standard errors of their estimate.
+void print_intervals(const Rows& rows) {
+  double numbers = 0.0, within_two = 0.0, within_three = 0.0;
+  for (const json& row : rows) {
+    for (const json& i : row.value("intervals", json::array())) {
+      const double off = std::abs(i["value"].get<double>() - i["truth"].get<double>()) / i["sigma"].get<double>();
+      numbers += 1.0;
+      within_two += off < 2.0 ? 1.0 : 0.0;
+      within_three += off < 3.0 ? 1.0 : 0.0;
+    }
+  }
+  if (numbers > 0.0)
+    std::printf("\nhidden numbers within 2 sigma of their estimates: %.1f %% of %.0f, within 3 sigma %.1f %%\n",
+                100.0 * within_two / numbers, numbers, 100.0 * within_three / numbers);
+}
+
 }  // namespace
 
 void print_table(const Rows& rows) {
@@ -145,6 +162,7 @@ void print_table(const Rows& rows) {
   print_head();
   print_by(large(effect), [](const json& r) { return r["system"].get<std::string>() + " " + hidden(r); });
   print_reliability(rows);
+  print_intervals(rows);
   print_times(rows);
 }
 
