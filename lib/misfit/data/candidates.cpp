@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "misfit/core/display.h"
@@ -102,8 +103,10 @@ std::vector<std::string> words_of_place(const std::map<std::string, std::string>
 }
 
 std::string parameters_in_words(const Candidate& candidate) {
+  constexpr double none = 1e9;  // an effect's way to say that it has no such limit
   std::vector<std::string> out;
   for (const auto& [name, e] : candidate.parameters) {
+    if (!(e.sigma > 0.0) && std::abs(e.value) >= none) continue;
     const bool held = std::any_of(candidate.fixed.begin(), candidate.fixed.end(),
                                   [&, own = name](const std::string& fixed) { return own == fixed || own.ends_with("." + fixed); });
     out.push_back(name + " = " + in_display_unit(e.value, e.unit, e.sigma) + (held ? " (fixed)" : ""));

@@ -91,7 +91,8 @@ bool are_tied(const RankedCandidate& a, const RankedCandidate& b) {
   return std::abs(a.refit->drop - b.refit->drop) <= (both_lag ? 2.0 : 1.0) * tied_drops;
 }
 
-/// Step 8: groups the best candidate with those that these data cannot distinguish from it.
+/// Step 8: groups the best candidate with those that these data cannot distinguish from it. Not with one that has an edge which nothing
+/// visits: with the other edge alone it is a candidate of its own.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -100,7 +101,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   const double p_accept = context.options.p_accept;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
     RankedCandidate& other = ranked[k];
-    if (!other.refit || !are_tied(other, best)) continue;
+    if (!other.refit || !are_tied(other, best) || edge_not_visited(other.refit->estimate)) continue;
     if (!adds_nothing(given_best, other, p_accept) || !adds_nothing(ConditionalScores(*other.refit, context), best, p_accept)) continue;
     members.push_back(&other);
   }

@@ -46,6 +46,7 @@ class Search {
       waves_->refit_the_significant_beyond_a_step();
       waves_->refit_what_the_free_run_shows();
       waves_->refit_what_fell_short();
+      waves_->refit_beside_an_edge_not_visited();
       if (find_higher() || (options_.refits && !ranks().first())) return {};
       unexplained = what_is_accepted();
       if (none_accepted() && waves_->refit_the_other_nominated()) unexplained = what_is_accepted();

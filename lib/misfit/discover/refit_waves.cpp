@@ -10,6 +10,7 @@
 #include "misfit/discover/conditional.h"
 #include "misfit/discover/free_run.h"
 #include "misfit/discover/size_reading.h"
+#include "misfit/discover/verdict.h"
 #include "misfit/fit/regression/lost_sign.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/math/statistics.h"
@@ -185,6 +186,19 @@ void RefitWaves::refit_what_fell_short() {
     return e.refit ? e.refit->drop < least_of_score * e.screening->result.chi2 : !was_cut_off(e);
   };
   refit_again({.wanted = fell_short, .name = "_short"});
+}
+
+void RefitWaves::refit_beside_an_edge_not_visited() {
+  std::vector<std::vector<std::string>> ports;
+  for (const RankedCandidate& e : ranked_) {
+    if (e.refit && edge_not_visited(e.refit->estimate)) ports.push_back(e.screening->candidate_model->port_names);
+  }
+  const auto begins = [&](const RankedCandidate& e) {
+    return significant(e) && is_far_from_linear(e) &&
+           std::find(ports.begin(), ports.end(), e.screening->candidate_model->port_names) != ports.end();
+  };
+  if (ranks().size() == 1 && !ports.empty())
+    refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_edges"});
 }
 
 bool RefitWaves::was_cut_off(const RankedCandidate& e) const {

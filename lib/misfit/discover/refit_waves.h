@@ -34,6 +34,9 @@ class RefitWaves {
   /// free in the estimate may be where it is to make up for the missing effect. Not of those that promise less than half of what another
   /// one explains, past which they would not be chosen.
   void refit_what_fell_short();
+  /// An effect with two edges one of which nothing visits is refused, and may be one with the other edge alone, whose score promises little
+  /// from far below: those at the same port that are significant and not refitted yet.
+  void refit_beside_an_edge_not_visited();
   /// Further waves, where nothing is accepted yet. False: there is none, or none gains.
   bool refit_the_other_nominated();
   bool refit_the_other_significant_ones();
