@@ -51,7 +51,7 @@ Series excitation(const World& world, const Channel& channel, int number) {
 Series felt(const Series& recorded, const World& world, const Values& hidden, int parts) {
   Series u(recorded.size() * static_cast<std::size_t>(2 * parts) + 1);
   const double half_step = world.step / (2.0 * parts);
-  double play = recorded.front(), slewed = recorded.front();
+  double play = recorded.front(), slewed = recorded.front(), wanted = recorded.front();
   for (std::size_t k = 0; k < u.size(); ++k) {
     const double at = std::max((static_cast<double>(k) * half_step - hidden("delay")) / world.step + 1e-9, 0.0);
     const std::size_t i = std::min(static_cast<std::size_t>(at), recorded.size() - 1), next = std::min(i + 1, recorded.size() - 1);
@@ -59,7 +59,11 @@ Series felt(const Series& recorded, const World& world, const Values& hidden, in
     v += hidden("offset");
     if (hidden("limit") > 0.0) v = std::clamp(v, -hidden("limit"), hidden("limit"));
     if (hidden("play") > 0.0) v = play = std::clamp(play, v - hidden("play"), v + hidden("play"));
-    if (hidden("slew") > 0.0) v = slewed += std::clamp(v - slewed, -hidden("slew") * half_step, hidden("slew") * half_step);
+    if (hidden("slew") > 0.0) {  // towards what was wanted until now
+      slewed += std::clamp(wanted - slewed, -hidden("slew") * half_step, hidden("slew") * half_step);
+      wanted = v;
+      v = slewed;
+    }
     u[k] = v;
   }
   return u;
