@@ -195,6 +195,7 @@ TEST_F(StudyFolder, TheSystemIsOneKindOrOneFile) {
   expect_parts(error_of("[study]\nseed = 1\n"), {"study.toml", "[system] is missing"});
   expect_parts(error_of("[system]\ninduced_angle = true\n"), {"study.toml:1", "exactly one of kind and file"});
   expect_parts(error_of("[system]\nkind = \"x\"\nfile = \"model.toml\"\n"), {"exactly one of kind and file"});
+  expect_parts(error_of("[system]\nfil = \"model.toml\"\n"), {"study.toml:2", "unknown key 'fil' in [system]", "did you mean 'file'"});
   expect_parts(error_with("order = [1]\n"), {"study.toml:3:1", "system.order"});
   expect_parts(error_with("step = \"20 mss\"\n"), {"study.toml:3", "system.step", "'mss'", "'ms'"});
   expect_parts(error_with("order = nan\n"), {"study.toml:3", "system.order"});

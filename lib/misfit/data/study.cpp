@@ -49,11 +49,21 @@ void read_hold(const Section& system, Study& study) {
   hold.finish();
 }
 
+/// A key that is nearly one of the two by which a system is named.
+void refuse_mistyped_name(const DescribedSection& system) {
+  const std::vector<std::string> names = {"kind", "file"};
+  for (const std::string& key : system.keys()) {
+    if (!nearest_name(key, names).empty())
+      throw InputError(system.where(key), "unknown key '" + key + "' in [system]" + suggest(key, names));
+  }
+}
+
 void read_system(const Section& root, Study& study) {
   if (!root.has("system"))
     throw InputError({study.file.string(), 0, 0}, "the section [system] is missing: it names the model, as kind = \"parachute_spherical\"");
   const DescribedSection system = study_parts::described(root, "system");
   read_hold(system, study);
+  if (!system.has("kind") && !system.has("file")) refuse_mistyped_name(system);
   if (system.has("kind") == system.has("file")) system.fail("", "exactly one of kind and file is needed");
   study.system_kind = system.text("kind").value_or("");
   study.system_file = study_parts::existing_file(system, "file", study.folder);
