@@ -30,7 +30,7 @@ struct SensorAbsolute {
        .scale = 0.05,
        .doc = "rounding about 0",
        .fixed = true,
-       .scan = {.from = 0.02, .to = 0.02, .count = 1, .over = "|signal|"}},
+       .scan = {.from = 0.02, .to = 0.02, .count = 1, .over = "|signal|", .smooths = true}},
   };
 
   template <class T, class K>

@@ -197,12 +197,15 @@ Choice first_without_lack_of_fit(std::vector<RankedCandidate>& ranked, std::vect
   return {ranked.end()};
 }
 
-/// Curves of unknown form that promised more than the choice did where all were screened.
+/// Curves of unknown form that promised more than the choice did where all were screened, and are worth a tenth of what it explains: a
+/// score far from the maximum, or one that vanishes, promises little.
 std::vector<UnknownCurve> larger_than(const RankedCandidate& choice, const std::vector<UnknownCurve>& unknown,
                                       const SearchContext& context) {
+  constexpr double of_drop = 0.1;
+  const double least = std::max(choice.screening->result.chi2, of_drop * choice.refit->drop);
   std::vector<UnknownCurve> out;
   std::copy_if(unknown.begin(), unknown.end(), std::back_inserter(out),
-               [&](const UnknownCurve& curve) { return is_significant(curve, context) && curve.worth() > choice.screening->result.chi2; });
+               [&](const UnknownCurve& curve) { return is_significant(curve, context) && curve.worth() > least; });
   return out;
 }
 

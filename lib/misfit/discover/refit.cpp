@@ -140,7 +140,7 @@ Model start_model(const FilterEstimate& without, const ScreeningResult& screenin
     const int shape = i < candidate_model.shapes.size() ? candidate_model.shapes[i] : candidate_model.frequency;
     Parameter& p = model.parameters[shape];
     p.value = screening.cell[i];
-    p.lower = candidate_model.model.parameters[shape].lower;
+    p.lower = std::min(candidate_model.model.parameters[shape].lower, p.value);
     p.free |= several_values_scanned(candidate_model, i);
   }
   return model;

@@ -5,10 +5,12 @@
 #include <utility>
 
 #include "misfit/core/error.h"
+#include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/conditional.h"
 #include "misfit/discover/free_run.h"
+#include "misfit/discover/operating_range.h"
 #include "misfit/discover/size_reading.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/fit/regression/lost_sign.h"
@@ -56,6 +58,40 @@ double RefitWaves::best_predicted() const {
 }
 bool RefitWaves::significant(const RankedCandidate& e) const { return is_significant(e, context_.options.p_accept); }
 
+namespace {
+
+/// The widths over which corners of a sensor are rounded (ScanSpec::smooths) as narrow as the filter resolves there, and its noise hides.
+void narrow_corners(ScreeningResult& screening, const FilterEstimate& there) {
+  const CandidateModel& candidate_model = *screening.candidate_model;
+  const BoundEffect& bound = candidate_model.model.effects.back();
+  const OperatingRange resolved(there);
+  for (std::size_t c = 0; c < bound.coefficients.size(); ++c) {
+    const int shape = place_of(candidate_model.shapes, bound.coefficients[c].parameter);
+    if (shape < 0 || !bound.effect->spec().coefficients[c].scan.smooths) continue;
+    double& width = screening.cell[shape];
+    width = std::min(width, std::max(resolved.lower_bound(bound, c), there.noise.channels[bound.ports.front()].white));
+  }
+}
+
+/// With the other sign of an output throughout, which sizes do not tell from the one, but the model may.
+std::vector<Signals> turned(std::vector<Signals> experiments, const std::string& output) {
+  for (Signals& signals : experiments) {
+    for (Signal& s : signals.measured) {
+      for (double& value : s.values) value = s.name == output ? -value : value;
+    }
+  }
+  return experiments;
+}
+
+/// The first, where the second is not clearly higher.
+std::optional<FilterEstimate> higher_of(std::optional<FilterEstimate> first, std::optional<FilterEstimate> second) {
+  constexpr double clearly = 1.0;  // of the log-likelihood
+  const bool first_stays = first && (!second || second->objective < first->objective + clearly);
+  return first_stays ? std::move(first) : std::move(second);
+}
+
+}  // namespace
+
 void RefitWaves::refit_where_signs_are_lost() {
   std::vector<const ScreeningResult*> screened;
   for (const RankedCandidate& e : ranked_) screened.push_back(e.screening);
@@ -63,30 +99,17 @@ void RefitWaves::refit_where_signs_are_lost() {
     const std::optional<SizeReading> reading = reads_size_alone(*s->candidate_model);
     const auto record = reading ? with_signs(context_.experiments, reading->output) : std::nullopt;
     if (!record) continue;
-    const std::optional<FilterEstimate> rest = fitted_to_either(record->experiments, reading->output);
+    const std::vector<Signals> other_signs = turned(record->experiments, reading->output);
+    const std::optional<FilterEstimate> rest = higher_of(fitted_to(record->experiments), fitted_to(other_signs));
     if (!rest) continue;
     ScreeningResult whole = *s;
     whole.result.amplitude = reading->strengths;
+    narrow_corners(whole, *rest);
     refit_wave({.begin = [&](const RankedCandidate& e) { return e.screening == s ? &whole : nullptr; }, .name = "_signs", .rest = &*rest});
   }
 }
 
-/// The model without any effect fitted to an output with signs, or with all of them turned, which the output does not tell apart, but the
-/// model may.
-std::optional<FilterEstimate> RefitWaves::fitted_to_either(std::vector<Signals> experiments, const std::string& output) const {
-  constexpr double clearly = 1.0;  // of the log-likelihood
-  std::optional<FilterEstimate> as_given = fitted_to(experiments);
-  for (Signals& signals : experiments) {
-    for (Signal& s : signals.measured) {
-      for (double& value : s.values) value = s.name == output ? -value : value;
-    }
-  }
-  std::optional<FilterEstimate> turned = fitted_to(experiments);
-  const bool as_given_is_better = as_given && (!turned || turned->objective < as_given->objective + clearly);
-  return as_given_is_better ? std::move(as_given) : std::move(turned);
-}
-
-/// The model without any effect fitted to other measurements; nullopt: it cannot be.
+/// The model without any effect fitted to other measurements, to which the estimate points; nullopt: it cannot be.
 std::optional<FilterEstimate> RefitWaves::fitted_to(const std::vector<Signals>& experiments) const {
   const FilterEstimate& estimate = context_.estimate;
   FilterOptions options = options_like(estimate, context_.options.threads);
@@ -116,8 +139,7 @@ void RefitWaves::refit_the_significant_beyond_a_step() {
   constexpr double most_more = 10.0;
   const RankedCandidate* first = ranks().size() > 1 ? nullptr : with_largest_drop(ranked_, context_.options.p_accept);
   const auto begins = [&](const RankedCandidate& e) {
-    return may_be_significant(e, context_.options.p_accept) && is_far_from_linear(e) &&
-           may_explain_as(first, e, e.candidate.predicted_drop, most_more);
+    return significant(e) && is_far_from_linear(e) && may_explain_as(first, e, e.candidate.predicted_drop, most_more);
   };
   refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_shapes"});
 }

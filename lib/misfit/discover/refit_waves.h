@@ -75,7 +75,6 @@ class RefitWaves {
   bool refit_again(const Again& again);
   bool refit_wave(const Wave& wave);
   [[nodiscard]] std::optional<FilterEstimate> fitted_to(const std::vector<Signals>& experiments) const;
-  [[nodiscard]] std::optional<FilterEstimate> fitted_to_either(std::vector<Signals> experiments, const std::string& output) const;
   std::vector<SteppedRefit> refitted(const RefitWork& work, const ScoreTest& score, const std::vector<const ScreeningResult*>& effects,
                                      const char* name);
   void store_refit(RankedCandidate& e);
