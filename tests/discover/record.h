@@ -32,7 +32,7 @@ inline Signals record(const ModelRequest& request, const Values& values, double 
   for (const auto& o : spec.outputs) s.measured.push_back({o.name, o.unit, {}});
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  constexpr std::size_t samples = 1500, held = 20;
+  constexpr std::size_t samples = 2500, held = 20;
   double u = 0.0;
   for (std::size_t k = 0; k < samples; ++k) {
     if (k % held == 0) u = std::abs(input) * (input < 0.0 ? std::abs(normal(random)) : normal(random));

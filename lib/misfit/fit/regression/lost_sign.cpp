@@ -99,40 +99,53 @@ void fit_coefficients(const Regression& of, SignedFit& fit) {
 constexpr int pairs = 4;
 int sign_of(int pair, int bit) { return (pair >> bit & 1) != 0 ? -1 : 1; }
 
-/// The signs that leave the least squares with these coefficients, by dynamic programming over the pairs of a sample and the one before.
-void choose_signs(const Regression& of, SignedFit& fit) {
+/// For every row and pair of signs at it, the best pair at the row before.
+struct BestPaths {
+  std::vector<std::array<int, pairs>> from;
+  std::vector<int> end_before;  ///< where a row does not go on: the pair with which the row before it ends
+  int end = 0;                  ///< with which the last row does
+};
+
+int least_of(const std::array<double, pairs>& cost) { return static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin()); }
+
+BestPaths best_paths(const Regression& of, const Eigen::VectorXd& coefficients) {
   const std::size_t n = of.rows.size();
-  std::vector<std::array<int, pairs>> from(n);  // the best pair before each
-  std::vector<int> end_before(n, 0);            // where a row does not go on: the pair with which the row before it ends
+  BestPaths out{std::vector<std::array<int, pairs>>(n), std::vector<int>(n, 0)};
   std::array<double, pairs> cost{};
   for (std::size_t k = 0; k < n; ++k) {
     const auto& row = of.rows[k];
     if (!row.goes_on) {
-      end_before[k] = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
-      cost.fill(cost[end_before[k]]);
+      out.end_before[k] = least_of(cost);
+      cost.fill(cost[out.end_before[k]]);
     }
-    const double forced = of.r.row(static_cast<Eigen::Index>(k)).dot(fit.coefficients.tail(of.r.cols()));
+    const double forced = of.r.row(static_cast<Eigen::Index>(k)).dot(coefficients.tail(of.r.cols()));
     std::array<double, pairs> next{};
     next.fill(std::numeric_limits<double>::infinity());
     for (int before = 0; before < pairs; ++before) {
       const double predicted =
-          fit.coefficients[0] * sign_of(before, 0) * row.before + fit.coefficients[1] * sign_of(before, 1) * row.before_that + forced;
+          coefficients[0] * sign_of(before, 0) * row.before + coefficients[1] * sign_of(before, 1) * row.before_that + forced;
       for (int now = 0; now < 2; ++now) {
         const int to = (before & 1) << 1 | now;
         const double error = sign_of(to, 0) * row.y - predicted, with = cost[before] + error * error;
-        if (with < next[to]) {
-          next[to] = with;
-          from[k][to] = before;
-        }
+        if (!(with < next[to])) continue;
+        next[to] = with;
+        out.from[k][to] = before;
       }
     }
     cost = next;
   }
-  auto pair = static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin());
-  for (std::size_t k = n; k-- > 0;) {
-    const int before = from[k][pair];
+  out.end = least_of(cost);
+  return out;
+}
+
+/// The signs that leave the least squares with these coefficients, by dynamic programming over the pairs of a sample and the one before.
+void choose_signs(const Regression& of, SignedFit& fit) {
+  const BestPaths best = best_paths(of, fit.coefficients);
+  int pair = best.end;
+  for (std::size_t k = of.rows.size(); k-- > 0;) {
+    const int before = best.from[k][pair];
     fit.signs[k] = {sign_of(pair, 0), sign_of(before, 0), sign_of(before, 1)};
-    pair = of.rows[k].goes_on ? before : end_before[k];
+    pair = of.rows[k].goes_on ? before : best.end_before[k];
   }
 }
 
@@ -160,8 +173,7 @@ std::vector<int> signs_through_zero(const Regression& of) {
   for (const auto& row : of.rows) largest = std::max(largest, row.y);
   std::vector<int> out;
   int sign = 1;
-  for (std::size_t k = 0; k < of.rows.size(); ++k) {
-    const auto& row = of.rows[k];
+  for (const auto& row : of.rows) {
     const bool least = row.before < near * largest && row.before <= row.before_that && row.before < row.y;
     if (row.goes_on && least) sign = -sign;
     out.push_back(sign);
