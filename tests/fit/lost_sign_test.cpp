@@ -49,12 +49,27 @@ TEST(AnOutputWithoutItsSign, GetsItBackBesideMissingSamplesAndInAnotherRecording
   EXPECT_GT(share_right(record->experiments[1], motor(false, -30.0, 7)), 0.98);
 }
 
+TEST(AnOutputWithoutItsSign, GetsItBackBesideAnInputThatWasNotRecordedWhole) {
+  Signals record = motor(true, 40.0, 13);
+  record.inputs.insert(record.inputs.begin(), {"lamp", "V", {}, 0.0});
+  const auto found = with_signs({record}, "w");
+  ASSERT_TRUE(found);
+  EXPECT_GT(share_right(found->experiments.front(), motor(false, 40.0, 13)), 0.98);
+}
+
 TEST(AnOutputWithItsSign, IsLeft) { EXPECT_FALSE(with_signs({motor(false, 40.0, 8)}, "w")); }
 
 TEST(AnOutputThatIsPositive, IsLeft) {
   Signals above = motor(false, 40.0, 9);
   for (double& w : above.measured[0].values) w += 100.0;
   EXPECT_FALSE(with_signs({above}, "w"));
+}
+
+/// Nothing but rounding is left of it, with any signs.
+TEST(AnOutputThatIsPositiveWithoutNoise, IsLeft) {
+  Signals decay = motor(false, 40.0, 14, 0.0);
+  for (std::size_t k = 0; k < decay.samples(); ++k) decay.measured[0].values[k] = 50.0 * std::exp(-0.1 * decay.t[k]);
+  EXPECT_FALSE(with_signs({decay}, "w"));
 }
 
 TEST(AnOutputThatEndsAtZero, IsLeft) {

@@ -79,9 +79,9 @@ std::string part_of_effect(const FilterEstimate& estimate, const std::vector<Who
   return {};
 }
 
-/// [log-likelihood] What the whole effect may cost: as much as the share of a whole one gains by chance, once in a hundred times (half of a
-/// chi² of one degree of freedom), or a hundredth of what it explains, since
-/// formulas idealise; a twentieth, where it was found to 2 % of the whole, and so is no part.
+/// [log-likelihood] What the whole effect may cost: as much as a free share gains by chance once in a hundred times (half of the 99 %
+/// quantile of a chi² of one degree of freedom), or a hundredth of what it explains, since formulas idealise; a twentieth, where it was
+/// found to 2 % of the whole, and so is no part.
 double allowed_of_whole(const RefitWork& work, const FilterEstimate& part, const std::vector<WholeStrength>& whole) {
   constexpr double of_a_part = 3.32, about = 0.02, of_gain = 0.01, of_gain_near = 0.05;
   const bool near = std::all_of(whole.begin(), whole.end(), [&](const WholeStrength& w) {

@@ -29,9 +29,13 @@ const Signal* channel(const Signals& signals, const std::string& name) {
   return found == signals.measured.end() ? nullptr : &*found;
 }
 
+bool is_recorded(const Signal& input) { return !input.values.empty(); }
+
 std::vector<double> regressors_at(const Signals& signals, const std::string& output, std::size_t k) {
   std::vector<double> out;
-  for (const Signal& input : signals.inputs) out.insert(out.end(), {input.values[k], input.values[k - 1]});
+  for (const Signal& input : signals.inputs) {
+    if (is_recorded(input)) out.insert(out.end(), {input.values[k], input.values[k - 1]});
+  }
   for (const Signal& other : signals.measured) {
     if (other.name != output) out.push_back(other.values[k - 1]);
   }
@@ -92,7 +96,8 @@ void fit_coefficients(const Regression& of, SignedFit& fit) {
     total += y * y;
   }
   fit.coefficients = normal.completeOrthogonalDecomposition().solve(right);
-  fit.squares = total - right.dot(fit.coefficients);
+  constexpr double rounding = 1e-10;  // of the squares: what is less says nothing
+  fit.squares = std::max(total - right.dot(fit.coefficients), rounding * total);
 }
 
 /// A pair of signs: bit 0 of a sample, bit 1 of the one before; set: negative.
@@ -226,7 +231,8 @@ std::optional<SignedRecord> with_signs(const std::vector<Signals>& experiments, 
   SignedRecord out;
   out.left = best.squares / without.squares;
   if (!(out.left < most_left)) return std::nullopt;
-  orient(best, of, !experiments.front().inputs.empty());
+  const std::vector<Signal>& inputs = experiments.front().inputs;
+  orient(best, of, std::any_of(inputs.begin(), inputs.end(), is_recorded));
   out.experiments = experiments;
   for (Signals& signals : out.experiments) {
     for (Signal& s : signals.measured) {

@@ -23,8 +23,8 @@ struct SignedRecord {
 /// turns a, b, c and d by least squares, and the signs by dynamic programming (Viterbi, IEEE Trans. Inf. Theory 13 (1967) 260). Begun from
 /// an output that goes through zero wherever it comes close to it, and from one that has the sign of each r about its median; the best of
 /// these. Which of the two signs is the positive one no output can tell: that with which the first input raises it, or, without inputs, for
-/// which it is mostly positive. The samples are taken as evenly spaced; samples whose past is missing are missing in the answer, and
-/// held-out ones do not count in the regression.
+/// which it is mostly positive. The samples are taken as evenly spaced; samples whose past is missing are missing in the answer,
+/// held-out ones do not count in the regression, and inputs without values are left out.
 ///
 /// nullopt: the output is negative somewhere, beyond noise; or with signs the regression leaves more than half of what it leaves without.
 [[nodiscard]] std::optional<SignedRecord> with_signs(const std::vector<Signals>& experiments, const std::string& output);
