@@ -14,11 +14,11 @@
 namespace misfit {
 namespace {
 
-constexpr std::size_t columns = 100;
+constexpr std::size_t line_width = 100;
 
 /// "  name      text", further lines below the text; a name that is too long has a line of its own.
-std::string entry(const std::string& name, const std::string& text, std::size_t column) {
-  const std::string lines = wrap_text(text, columns, std::string(column, ' '));
+std::string manual_entry(const std::string& name, const std::string& text, std::size_t column) {
+  const std::string lines = wrap_text(text, line_width, std::string(column, ' '));
   if (name.size() + 4 > column) return "  " + name + "\n" + lines + "\n";
   return "  " + name + lines.substr(2 + name.size()) + "\n";
 }
@@ -89,20 +89,20 @@ std::string completion_of(const VerbManual& verb) {
 
 std::string verb_help(const VerbManual& verb) {
   constexpr std::size_t column = 11;
-  std::string out = wrap_text(fmt::format("misfit {}: {}", verb.text.name, verb.text.doc), columns) + "\n\n  " + usage(verb) + "\n\n";
-  out += entry("reads", verb.text.reads, column) + entry("writes", verb.text.writes, column) + entry("example", verb.text.example, column) +
-         "\n";
-  for (const OptionText& option : verb.options) out += entry(with_type(option), doc_of(option), 26);
-  return out + entry("-h, --help", "this text", 26);
+  std::string out = wrap_text(fmt::format("misfit {}: {}", verb.text.name, verb.text.doc), line_width) + "\n\n  " + usage(verb) + "\n\n";
+  out += manual_entry("reads", verb.text.reads, column) + manual_entry("writes", verb.text.writes, column) +
+         manual_entry("example", verb.text.example, column) + "\n";
+  for (const OptionText& option : verb.options) out += manual_entry(with_type(option), doc_of(option), 26);
+  return out + manual_entry("-h, --help", "this text", 26);
 }
 
 std::string contents_of_help(std::span<const VerbText> verbs) {
   constexpr std::size_t column = 14;
   std::string out =
       "misfit: find out what your model is missing\n\nmisfit VERB … runs a verb; misfit help VERB, or misfit VERB --help, describes it\n";
-  for (const VerbText& verb : verbs) out += entry(verb.name, verb.doc, column);
+  for (const VerbText& verb : verbs) out += manual_entry(verb.name, verb.doc, column);
   out += "\nmisfit help TOPIC\n";
-  for (const auto& [topic, doc] : help_topics()) out += entry(topic, doc, column);
+  for (const auto& [topic, doc] : help_topics()) out += manual_entry(topic, doc, column);
   return out + "\nmisfit alone says what to do next in this folder; misfit --version prints the version.\n";
 }
 

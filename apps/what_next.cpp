@@ -15,13 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Found {
+struct FolderContents {
   std::vector<std::string> studies;  ///< folders
   std::vector<std::string> tables;   ///< CSV files
 };
 
-Found look(const fs::path& folder) {
-  Found out;
+FolderContents look(const fs::path& folder) {
+  FolderContents out;
   std::error_code none;
   for (const fs::directory_entry& item : fs::directory_iterator(folder, none)) {
     const std::string name = item.path().filename().string();
@@ -83,7 +83,7 @@ std::string of_study(const fs::path& folder) {
 std::string what_next(const fs::path& folder, const fs::path& examples) {
   std::error_code none;
   std::string out = "misfit finds out what your model is missing.\n\n";
-  const Found found = look(folder);
+  const FolderContents found = look(folder);
   const bool study = fs::exists(folder / "study.toml", none);
   if (study) out += of_study(folder);
   if (!study && !found.studies.empty()) out += "Studies in this folder:\n" + of_studies(folder, found.studies);

@@ -243,6 +243,17 @@ TEST(Accept, WholeStepsOfAnOutputAreFound) {
   EXPECT_NEAR(ranked[0].refit->parameters.at("rounded").value, 1.0, 0.1) << "of three harmonics of the sawtooth";
 }
 
+TEST(Accept, WholeStepsThatPredictNoBetterAreSaidAllTheSame) {
+  const World world = with_whole_steps(0.05);
+  std::vector<RankedCandidate> ranked = {world.entry("sensor_quantisation")};
+  ranked[0].candidate.held_out_gain = -3.0;
+  world.accept(ranked);
+  EXPECT_FALSE(ranked[0].candidate.accepted);
+  EXPECT_THAT(
+      ranked[0].candidate.why,
+      testing::HasSubstr("does not rise (-3); the measurements are in whole steps of 0.05 all the same, noise of 0.0144 to a filter"));
+}
+
 /// Hysteresis catches a little of the friction and would be accepted by itself; the order is as if it had caught the most.
 TEST(NamedCandidate, WhatTheModelAllButDescribesIsDescribedUnlessTheRestIsBeyondDoubt) {
   const World world = with_friction(3.0);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r";
 
-std::string_view trim(std::string_view text) {
+std::string_view unquoted(std::string_view text) {
   const auto from = text.find_first_not_of(blanks);
   if (from == std::string_view::npos) return {};
   text = text.substr(from, text.find_last_not_of(blanks) - from + 1);
@@ -33,7 +33,7 @@ std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
   if (delimiter == ' ') {
     for (auto from = line.find_first_not_of(blanks); from != std::string_view::npos;) {
       const auto to = std::min(line.find_first_of(blanks, from), line.size());
-      cells.push_back(trim(line.substr(from, to - from)));
+      cells.push_back(unquoted(line.substr(from, to - from)));
       from = line.find_first_not_of(blanks, to);
     }
     return cells;
@@ -43,7 +43,7 @@ std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
   for (std::size_t i = 0; i <= line.size(); ++i) {
     if (i < line.size() && line[i] == '"') quoted = !quoted;
     if (i < line.size() && (line[i] != delimiter || quoted)) continue;
-    cells.push_back(trim(line.substr(from, i - from)));
+    cells.push_back(unquoted(line.substr(from, i - from)));
     from = i + 1;
   }
   return cells;

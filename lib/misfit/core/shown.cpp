@@ -20,7 +20,7 @@ std::size_t bytes_of_character(unsigned char first) {
   return first >= 0xF0U && first <= 0xF4U ? 4 : 0;
 }
 
-bool continues(unsigned char byte) { return (byte & 0xC0U) == 0x80U; }
+bool continues_character(unsigned char byte) { return (byte & 0xC0U) == 0x80U; }
 
 void append_escape(std::string& out, unsigned char byte, Escapes escapes) {
   constexpr std::string_view digits = "0123456789abcdef";
@@ -42,7 +42,7 @@ std::size_t place_of(std::string_view text, std::size_t count) {
 }
 
 std::size_t characters_of(std::string_view text) {
-  return std::count_if(text.begin(), text.end(), [](unsigned char c) { return !continues(c); });
+  return std::count_if(text.begin(), text.end(), [](unsigned char c) { return !continues_character(c); });
 }
 
 /// The nearest name first and the others by their distance, if one is near; else the order stays.
@@ -91,7 +91,7 @@ std::string shortened(std::string_view message, std::size_t most) {
   const std::size_t tail = most / 3, head = most - tail - 3;
   std::size_t from = message.size();
   for (std::size_t left = tail; left > 0 && from > 0; --from) {
-    if (!continues(byte_at(message, from - 1))) --left;
+    if (!continues_character(byte_at(message, from - 1))) --left;
   }
   return std::string(message.substr(0, place_of(message, head))) + " … " + std::string(message.substr(from));
 }
@@ -114,7 +114,7 @@ std::string some_names(std::string_view name, const std::vector<std::string>& va
 std::size_t unfinished_bytes(std::string_view text) {
   for (std::size_t back = 1; back <= std::min<std::size_t>(3, text.size()); ++back) {
     const unsigned char byte = byte_at(text, text.size() - back);
-    if (continues(byte)) continue;
+    if (continues_character(byte)) continue;
     return bytes_of_character(byte) > back ? back : 0;
   }
   return 0;

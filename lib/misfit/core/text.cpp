@@ -41,8 +41,8 @@ void append_row(std::string& out, const std::vector<std::string>& cells, const s
                 const std::string& indent) {
   std::string line = indent;
   for (std::size_t j = 0; j < cells.size(); ++j) {
-    const std::string blanks(columns[j].width - code_points(cells[j]), ' ');
-    line += (j > 0 ? "  " : "") + (columns[j].right ? blanks + cells[j] : cells[j] + blanks);
+    const std::string padding(columns[j].width - code_points(cells[j]), ' ');
+    line += (j > 0 ? "  " : "") + (columns[j].right ? padding + cells[j] : cells[j] + padding);
   }
   line.erase(line.find_last_not_of(' ') + 1);
   out += line + "\n";

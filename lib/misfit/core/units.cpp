@@ -25,7 +25,7 @@ struct Known {
   double offset = 0.0;       ///< of a temperature [K]
 };
 
-constexpr Dimension none{};
+constexpr Dimension no_dimension{};
 constexpr Dimension length{1, 0, 0, 0, 0, 0};
 constexpr Dimension mass{0, 1, 0, 0, 0, 0};
 constexpr Dimension duration{0, 0, 1, 0, 0, 0};
@@ -90,11 +90,11 @@ constexpr Known known_units[] = {
     {"MHz", 1e6, rate, false, "Hz"},
     {"mph", 1609.344 / 3600.0, speed, false, "m/s"},
     {"knot", 1852.0 / 3600.0, speed, false, "m/s"},
-    {"rad", 1.0, none, true},
-    {"radian", 1.0, none, true},
-    {"deg", std::numbers::pi / 180.0, none, true, "rad"},
-    {"mrad", 1e-3, none, true, "rad"},
-    {"rev", turn, none, true, "rad"},
+    {"rad", 1.0, no_dimension, true},
+    {"radian", 1.0, no_dimension, true},
+    {"deg", std::numbers::pi / 180.0, no_dimension, true, "rad"},
+    {"mrad", 1e-3, no_dimension, true, "rad"},
+    {"rev", turn, no_dimension, true, "rad"},
     {"rpm", turn / 60.0, rate, true, "rad/s"},
     {"N", 1.0, force},
     {"kN", 1e3, force, false, "N"},
@@ -144,20 +144,20 @@ constexpr Known known_units[] = {
     {"K", 1.0, temperature},
     {"degC", 1.0, temperature, false, "K", celsius},
     {"degF", rankine, temperature, false, "K", celsius - 32.0 * rankine},
-    {"mol", 1.0, none},  // a count: balances of substances need no dimension of their own
-    {"mmol", 1e-3, none, false, "mol"},
-    {"umol", 1e-6, none, false, "mol"},
-    {"kmol", 1e3, none, false, "mol"},
-    {"U", 1.0, none},  // of an enzyme or a hormone: what acts as one unit of it
-    {"mU", 1e-3, none, false, "U"},
-    {"uU", 1e-6, none, false, "U"},
+    {"mol", 1.0, no_dimension},  // a count: balances of substances need no dimension of their own
+    {"mmol", 1e-3, no_dimension, false, "mol"},
+    {"umol", 1e-6, no_dimension, false, "mol"},
+    {"kmol", 1e3, no_dimension, false, "mol"},
+    {"U", 1.0, no_dimension},  // of an enzyme or a hormone: what acts as one unit of it
+    {"mU", 1e-3, no_dimension, false, "U"},
+    {"uU", 1e-6, no_dimension, false, "U"},
     {"px", 1.0, pixel},
     {"pix", 1.0, pixel},
     {"pixel", 1.0, pixel},
-    {"-", 1.0, none},
-    {"%", 0.01, none, false, "-"},
-    {"ppm", 1e-6, none, false, "-"},
-    {"1", 1.0, none},
+    {"-", 1.0, no_dimension},
+    {"%", 0.01, no_dimension, false, "-"},
+    {"ppm", 1e-6, no_dimension, false, "-"},
+    {"1", 1.0, no_dimension},
 };
 
 const Known& find_unit(std::string_view name, std::string_view whole) {
@@ -287,7 +287,7 @@ class UnitReader {
   bool started_ = false;
 };
 
-std::string_view trim(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
@@ -338,12 +338,12 @@ std::string plain_unit(std::string_view text) {
 }
 
 std::vector<std::pair<std::string, double>> unit_symbols(std::string_view text) {
-  const std::string plain = plain_unit(trim(text));
+  const std::string plain = plain_unit(without_blanks(text));
   return UnitReader(plain).symbols();
 }
 
 Unit parse_unit(std::string_view text) {
-  const std::string plain = plain_unit(trim(text));
+  const std::string plain = plain_unit(without_blanks(text));
   return UnitReader(plain).read();
 }
 
@@ -367,7 +367,7 @@ std::string unit_in_si(std::string_view text) {
 }
 
 Quantity parse_quantity(std::string_view text) {
-  std::string_view rest = trim(text);
+  std::string_view rest = without_blanks(text);
   const std::string quoted = "'" + shown(text) + "'";
   if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
   double value = 0.0;
@@ -375,7 +375,7 @@ Quantity parse_quantity(std::string_view text) {
   if (error == std::errc::result_out_of_range) throw InputError(quoted + ": the number is out of range");
   if (error != std::errc()) throw InputError(quoted + " is not a number with a unit, as in '24 in'");
   if (!std::isfinite(value)) throw InputError(quoted + ": a finite number is needed");
-  const std::string_view unit = trim(rest.substr(end - rest.data()));
+  const std::string_view unit = without_blanks(rest.substr(end - rest.data()));
   if (unit.empty()) return {value, ""};
   const Unit parsed = parse_unit(unit);
   if (parsed.offset != 0.0)

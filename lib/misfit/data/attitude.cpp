@@ -12,29 +12,29 @@
 namespace misfit {
 namespace {
 
-struct Field {
+struct AttitudeColumn {
   const char* name;
   const char* unit;  ///< in the file
   std::vector<double> Attitude::*values;
   bool required;  ///< of a file that somebody else wrote
 };
 
-constexpr std::array<Field, 16> fields = {{{"t", "s", &Attitude::t, true},
-                                           {"theta", "deg", &Attitude::theta, true},
-                                           {"psi", "deg", &Attitude::psi, true},
-                                           {"alpha", "deg", &Attitude::alpha, true},
-                                           {"beta", "deg", &Attitude::beta, true},
-                                           {"alpha_T", "deg", &Attitude::alpha_T, true},
-                                           {"phi", "deg", &Attitude::phi, true},
-                                           {"eta", "deg", &Attitude::eta, false},
-                                           {"theta_mean", "deg", &Attitude::theta_mean, false},
-                                           {"psi_mean", "deg", &Attitude::psi_mean, false},
-                                           {"theta_rate", "deg/s", &Attitude::theta_rate, false},
-                                           {"psi_rate", "deg/s", &Attitude::psi_rate, false},
-                                           {"sigma_theta", "deg", &Attitude::sigma_theta, false},
-                                           {"sigma_psi", "deg", &Attitude::sigma_psi, false},
-                                           {"sigma_alpha_T", "deg", &Attitude::sigma_alpha_T, false},
-                                           {"sigma_phi", "deg", &Attitude::sigma_phi, false}}};
+constexpr std::array<AttitudeColumn, 16> attitude_columns = {{{"t", "s", &Attitude::t, true},
+                                                              {"theta", "deg", &Attitude::theta, true},
+                                                              {"psi", "deg", &Attitude::psi, true},
+                                                              {"alpha", "deg", &Attitude::alpha, true},
+                                                              {"beta", "deg", &Attitude::beta, true},
+                                                              {"alpha_T", "deg", &Attitude::alpha_T, true},
+                                                              {"phi", "deg", &Attitude::phi, true},
+                                                              {"eta", "deg", &Attitude::eta, false},
+                                                              {"theta_mean", "deg", &Attitude::theta_mean, false},
+                                                              {"psi_mean", "deg", &Attitude::psi_mean, false},
+                                                              {"theta_rate", "deg/s", &Attitude::theta_rate, false},
+                                                              {"psi_rate", "deg/s", &Attitude::psi_rate, false},
+                                                              {"sigma_theta", "deg", &Attitude::sigma_theta, false},
+                                                              {"sigma_psi", "deg", &Attitude::sigma_psi, false},
+                                                              {"sigma_alpha_T", "deg", &Attitude::sigma_alpha_T, false},
+                                                              {"sigma_phi", "deg", &Attitude::sigma_phi, false}}};
 
 }  // namespace
 
@@ -42,12 +42,12 @@ std::size_t samples_read(const Attitude& attitude) { return count_finite(attitud
 
 void write_attitude(const std::filesystem::path& path, const Attitude& attitude) {
   Table table;
-  for (const Field& field : fields) {
-    const double to_si = parse_unit(field.unit).to_si;
-    std::vector<double> values = attitude.*field.values;
+  for (const AttitudeColumn& column : attitude_columns) {
+    const double to_si = parse_unit(column.unit).to_si;
+    std::vector<double> values = attitude.*column.values;
     values.resize(attitude.t.size(), std::numeric_limits<double>::quiet_NaN());
     for (double& v : values) v /= to_si;
-    table.add(field.name, field.unit, std::move(values));
+    table.add(column.name, column.unit, std::move(values));
   }
   write_csv(path, table);
 }
@@ -55,14 +55,14 @@ void write_attitude(const std::filesystem::path& path, const Attitude& attitude)
 Attitude read_attitude(const std::filesystem::path& path) {
   const Table table = read_csv(path);
   Attitude attitude;
-  for (const Field& field : fields) {
-    std::vector<double>& to = attitude.*field.values;
-    if (!field.required && table.find(field.name) == nullptr) {
+  for (const AttitudeColumn& column : attitude_columns) {
+    std::vector<double>& to = attitude.*column.values;
+    if (!column.required && table.find(column.name) == nullptr) {
       to.assign(table.rows(), std::numeric_limits<double>::quiet_NaN());
       continue;
     }
-    to = table.values(field.name, field.unit);
-    const double to_si = parse_unit(field.unit).to_si;
+    to = table.values(column.name, column.unit);
+    const double to_si = parse_unit(column.unit).to_si;
     for (double& v : to) v *= to_si;
   }
   return attitude;

@@ -26,15 +26,15 @@ std::string curve_header(const CurveEstimate& curve) {
 }
 
 std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
+  std::vector<std::string> cells(1);
   for (const char c : line) {
     if (c == ',') {
-      fields.emplace_back();
+      cells.emplace_back();
     } else if (c != '\r') {
-      fields.back() += c;
+      cells.back() += c;
     }
   }
-  return fields;
+  return cells;
 }
 
 double parse_number(const std::string& field, const Source& where) {
@@ -108,16 +108,16 @@ void read_curves(const std::filesystem::path& path, std::vector<CurveEstimate>& 
   if (!std::getline(lines, line) || line != header) throw InputError(where, "header is '" + line + "', expected '" + header + "'");
   while (std::getline(lines, line)) {
     ++where.line;
-    const std::vector<std::string> fields = split(line);
-    if (fields.size() != 5) throw InputError(where, fmt::format("{} fields where the header has 5", fields.size()));
-    CurveEstimate& curve = curve_named(curves, file, fields[0], where);
+    const std::vector<std::string> cells = split(line);
+    if (cells.size() != 5) throw InputError(where, fmt::format("{} fields where the header has 5", cells.size()));
+    CurveEstimate& curve = curve_named(curves, file, cells[0], where);
     const auto si = [&](std::size_t k, const std::string& unit) {
-      return convert(parse_number(fields[k], where), display_unit(unit), unit);
+      return convert(parse_number(cells[k], where), display_unit(unit), unit);
     };
     curve.x.push_back(si(1, curve.of_unit));
     curve.value.push_back(si(2, curve.unit));
     curve.sigma.push_back(si(3, curve.unit));
-    curve.count.push_back(parse_number(fields[4], where));
+    curve.count.push_back(parse_number(cells[4], where));
   }
 }
 

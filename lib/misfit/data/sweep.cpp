@@ -86,11 +86,11 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// The text in column `index` of a line, without blanks and quotes about it.
 std::string field_of(const std::string& line, std::size_t index) {
-  std::istringstream fields(line);
+  std::istringstream cells(line);
   std::string field;
   for (std::size_t k = 0; k <= index; ++k) {
     field.clear();
-    std::getline(fields, field, ',');
+    std::getline(cells, field, ',');
   }
   const auto first = field.find_first_not_of(" \t\"\r"), last = field.find_last_not_of(" \t\"\r");
   return first == std::string::npos ? "" : field.substr(first, last - first + 1);

@@ -50,9 +50,9 @@ std::string not_significant(const RankedCandidate& e, const SearchContext& conte
          format_value(promised) + ", which is no evidence against it";
 }
 
-/// Step 4: the reason why it cannot be accepted; empty if there is none. Notes in `e` whether its refit is degenerate, its held-out gain
-/// (which may take two fits), and whether that alone speaks against it.
-std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
+/// The reason why it cannot be accepted; empty if there is none. Notes in `e` whether its refit is degenerate, its held-out gain (which may
+/// take two fits), and whether that alone speaks against it.
+std::string reason_against(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
   Candidate& c = e.candidate;
   e.alone_gains_nothing = false;
   if (!(c.p_value < context.options.p_accept)) return not_significant(e, context);
@@ -82,6 +82,14 @@ std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& co
   const int parameters = estimated_parameters(*e.refit);
   return "the held-out log-likelihood rises by " + format_value(*c.held_out_gain) + ", but " +
          counted(parameters, "new parameter needs", "new parameters need") + " more than " + format_value(least_held_out_gain(parameters));
+}
+
+/// Step 4. That measurements are in whole steps is seen in them, whatever the fit makes of the rounding: it is said beside the reason.
+std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
+  const std::string why = reason_against(e, held_out, context);
+  if (why.empty() || !(e.candidate.p_value < context.options.p_accept)) return why;
+  const auto steps = on_whole_steps(e.refit->estimate.model, context.experiments);
+  return steps ? why + "; " + *steps : why;
 }
 
 /// Within what neither could be preferred for. Two lags or delays are of different states, whose beginnings are not known: what the filter

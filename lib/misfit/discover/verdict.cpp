@@ -146,6 +146,15 @@ void say_none_missing(double p_accept, Discovery& out) {
                 " a family-wise p below " + format_value(p_accept) + " and a held-out gain above ½ per parameter" + closest + ".";
 }
 
+/// The parameter by which all measurements of the effect's output ought to be apart; -1: none.
+int step_of_measurements(const BoundEffect& effect) {
+  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
+  const auto step = std::find_if(coefficients.begin(), coefficients.end(),
+                                 [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
+  if (step == coefficients.end() || effect.kind != PortKind::sensor) return -1;
+  return effect.coefficients[step - coefficients.begin()].parameter;
+}
+
 }  // namespace
 
 std::optional<Unexplained> with_curves_alike(std::optional<Unexplained> unexplained, const std::vector<UnknownCurve>& all,
@@ -265,11 +274,7 @@ std::optional<std::string> hardly_reached(const FilterEstimate& estimate) {
 
 std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments) {
   const BoundEffect& effect = model.effects.back();
-  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
-  const auto multiples = std::find_if(coefficients.begin(), coefficients.end(),
-                                      [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
-  if (multiples == coefficients.end() || effect.kind != PortKind::sensor) return std::nullopt;
-  const int parameter = effect.coefficients[multiples - coefficients.begin()].parameter;
+  const int parameter = step_of_measurements(effect);
   if (parameter < 0) return std::nullopt;
   const Parameter& p = model.parameters[parameter];
   const double step = std::abs(p.value);
@@ -282,6 +287,15 @@ std::optional<std::string> off_whole_steps(const Model& model, const std::vector
            " (RMS) from multiples of it";
   }
   return std::nullopt;
+}
+
+std::optional<std::string> on_whole_steps(const Model& model, const std::vector<Signals>& experiments) {
+  const int parameter = step_of_measurements(model.effects.back());
+  if (parameter < 0 || off_whole_steps(model, experiments)) return std::nullopt;
+  const Parameter& p = model.parameters[parameter];
+  const double step = std::abs(p.value);
+  return "the measurements are in whole steps of " + in_display_unit(step, p.unit) + " all the same, noise of " +
+         in_display_unit(step / std::sqrt(12.0), p.unit) + " to a filter";
 }
 
 void add_camera_remarks(const Calibration* calibration, double p_accept, Discovery& out) {

@@ -122,8 +122,8 @@ class OutputSolver {
   [[nodiscard]] bool counts(const Linear& at) const {
     constexpr double most_left = 0.5, least_share = 1e-6;
     if (!(at.residual.cwiseAbs().maxCoeff() < most_left)) return false;
-    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(at.jacobian).singularValues();
-    return singular[singular.size() - 1] > least_share * singular[0];
+    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(at.jacobian).singularValues();
+    return values[values.size() - 1] > least_share * values[0];
   }
 
   /// The best of a grid of starts, the nearest first.

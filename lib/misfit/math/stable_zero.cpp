@@ -47,7 +47,7 @@ std::optional<std::size_t> last_stable_bracket(const WeightedPoints& means) {
   return std::nullopt;
 }
 
-struct Polynomial {
+struct WeightedPolynomial {
   Eigen::VectorXd c;  ///< in u = x − origin
   Eigen::MatrixXd covariance;
   double origin = 0.0;
@@ -60,9 +60,9 @@ struct Polynomial {
   [[nodiscard]] double slope(double x) const { return c(1) + (c.size() > 2 ? 2.0 * c(2) * (x - origin) : 0.0); }
 };
 
-Polynomial fit_polynomial(const WeightedPoints& points, Eigen::Index order, double origin, bool sigmas_known) {
+WeightedPolynomial fit_polynomial(const WeightedPoints& points, Eigen::Index order, double origin, bool sigmas_known) {
   const auto n = std::ssize(points.x);
-  Polynomial p{Eigen::VectorXd::Zero(order), {}, origin};
+  WeightedPolynomial p{Eigen::VectorXd::Zero(order), {}, origin};
   Eigen::MatrixXd A(n, order);
   Eigen::VectorXd b(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -77,7 +77,7 @@ Polynomial fit_polynomial(const WeightedPoints& points, Eigen::Index order, doub
   return p;
 }
 
-double zero_between(const Polynomial& p, double lo, double hi) {
+double zero_between(const WeightedPolynomial& p, double lo, double hi) {
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (lo + hi);
     (p.at(middle) > 0.0 ? lo : hi) = middle;
@@ -107,7 +107,7 @@ std::optional<ZeroCrossing> stable_zero(const WeightedPoints& given) {
   const Eigen::Index order = last - first + 1 >= 4 ? 3 : 2;
   const double lo = means.x[*bracket];
   const double hi = means.x[*bracket + 1];
-  const Polynomial p = fit_polynomial(between(points, means.x[first], means.x[last]), order, lo, known);
+  const WeightedPolynomial p = fit_polynomial(between(points, means.x[first], means.x[last]), order, lo, known);
   const double below = std::max(means.x[first], lo - (hi - lo));  // the smooth curve may cross just outside the bracket of the noisy means
   const double above = std::min(means.x[last], hi + (hi - lo));
   if (!(p.at(below) > 0.0) || !(p.at(above) <= 0.0)) return std::nullopt;

@@ -11,7 +11,7 @@
 namespace misfit {
 namespace {
 
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// Of the pairs at one lag.
 struct Pairs {
@@ -59,10 +59,10 @@ double variance_of(const std::vector<std::size_t>& lags, const std::vector<Pairs
 
 /// ρ_k of a series with places for `length` values: Autocorrelation of whiteness.h.
 double correlation(const Pairs& all, const Pairs& at_lag, double lag, double length) {
-  if (at_lag.count < min_pairs) return nan_value;
-  if (at_lag.count == length - lag) return all.product > 0.0 ? at_lag.product / all.product : nan_value;
+  if (at_lag.count < min_pairs) return not_known;
+  if (at_lag.count == length - lag) return all.product > 0.0 ? at_lag.product / all.product : not_known;
   const double scale = std::sqrt(at_lag.earlier * at_lag.later);
-  return scale > 0.0 ? (length - lag) / length * at_lag.product / scale : nan_value;
+  return scale > 0.0 ? (length - lag) / length * at_lag.product / scale : not_known;
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ std::vector<double> on_even_grid(const std::vector<double>& t, const std::vector
   std::vector<double> out;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double places = i > 0 && step > 0.0 ? std::clamp(std::round((t[i] - t[i - 1]) / step) - 1.0, 0.0, most) : 0.0;
-    out.insert(out.end(), static_cast<std::size_t>(places), nan_value);
+    out.insert(out.end(), static_cast<std::size_t>(places), not_known);
     out.push_back(residuals[i]);
   }
   return out;
@@ -84,7 +84,7 @@ std::vector<double> joined_series(const std::vector<std::vector<double>>& series
   for (const auto& s : series) values += count_finite(s);
   std::vector<double> out;
   for (const auto& s : series) {
-    if (!out.empty()) out.insert(out.end(), values, nan_value);
+    if (!out.empty()) out.insert(out.end(), values, not_known);
     out.insert(out.end(), s.begin(), s.end());
   }
   return out;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +26,9 @@ enum class Style {
   cells        ///< x, y, lo, hi, z: rectangles from x − lo to x + lo and y − hi to y + hi, coloured by z about 0
 };
 
-/// One thing drawn. Vectors of equal length; NaN breaks a line and leaves out a point.
+inline constexpr double no_point = std::numeric_limits<double>::quiet_NaN();
+
+/// One thing drawn. Vectors of equal length; no_point breaks a line and leaves out a point.
 struct Series {
   std::string key;     ///< short name for the columns of the CSV: letters, digits, '_' (made unique when written)
   std::string legend;  ///< plain text; empty: not in the legend

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
@@ -11,8 +10,6 @@
 
 namespace misfit::report {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> degrees(const std::vector<double>& radians) { return display_values(radians, "rad"); }
 
@@ -43,7 +40,7 @@ Series part_of(const Series& whole, const Interval& part) {
 std::vector<double> broken_at_jumps(std::vector<double> phi) {
   std::vector<double> result = phi;
   for (std::size_t i = 1; i < phi.size(); ++i) {
-    if (std::abs(phi[i] - phi[i - 1]) > 180.0) result[i] = nan;
+    if (std::abs(phi[i] - phi[i - 1]) > 180.0) result[i] = no_point;
   }
   return result;
 }

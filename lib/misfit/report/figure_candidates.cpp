@@ -9,8 +9,8 @@
 namespace misfit::report {
 namespace {
 
-constexpr double threshold = 0.01;  // family-wise; what discover accepts by
-constexpr double longest = 20.0;    // −log10 p: beyond, bars end
+constexpr double threshold = 0.01;    // family-wise; what discover accepts by
+constexpr double longest_bar = 20.0;  // −log10 p: beyond, bars end
 
 void add_bar(Series& series, double value, double y, double half) {
   series.x.push_back(value);
@@ -19,7 +19,7 @@ void add_bar(Series& series, double value, double y, double half) {
   series.hi.push_back(y + half);
 }
 
-double strength_of_evidence(double p) { return p > 0.0 ? std::clamp(0.0 - std::log10(p), 0.0, longest) : longest; }
+double strength_of_evidence(double p) { return p > 0.0 ? std::clamp(0.0 - std::log10(p), 0.0, longest_bar) : longest_bar; }
 
 Panel drop_panel(const std::vector<Candidate>& candidates, std::size_t count) {
   Panel panel;
@@ -75,9 +75,9 @@ Figure candidates_figure(const std::vector<Candidate>& candidates, std::size_t m
     panel.height = 40.0 + 34.0 * static_cast<double>(count);
   }
   if (count < candidates.size()) figure.notes.push_back(counted(candidates.size() - count, "more is", "more are") + " in candidates.json.");
-  const auto beyond = [](const Candidate& c) { return !(c.p_value > std::pow(10.0, -longest)); };
+  const auto beyond = [](const Candidate& c) { return !(c.p_value > std::pow(10.0, -longest_bar)); };
   if (std::any_of(candidates.begin(), candidates.begin() + count, beyond))
-    figure.notes.push_back(fmt::format("p below 1e-{:.0f} is drawn as 1e-{:.0f}.", longest, longest));
+    figure.notes.push_back(fmt::format("p below 1e-{:.0f} is drawn as 1e-{:.0f}.", longest_bar, longest_bar));
   return figure;
 }
 

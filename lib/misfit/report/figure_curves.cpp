@@ -13,8 +13,6 @@
 namespace misfit::report {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 struct Drawn {
   std::vector<double> x, value, lo, hi;
   std::vector<bool> visited;
@@ -37,7 +35,7 @@ Drawn drawn(const CurveEstimate& curve) {
 
 /// `values` where the point is visited (or, for `visited` false, where it or a neighbour is not, so that the two lines meet).
 std::vector<double> part(const std::vector<double>& values, const Drawn& d, bool visited) {
-  std::vector<double> result(values.size(), nan);
+  std::vector<double> result(values.size(), no_point);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool beside = (i > 0 && !d.visited[i - 1]) || (i + 1 < values.size() && !d.visited[i + 1]);
     if (visited ? d.visited[i] : !d.visited[i] || beside) result[i] = values[i];

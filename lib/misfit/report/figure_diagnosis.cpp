@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -14,8 +13,6 @@
 
 namespace misfit::report {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Half of the distance to the neighbours: how wide a place is drawn.
 std::vector<double> half_steps(const std::vector<double>& x) {
@@ -53,9 +50,9 @@ Series gaps_of(const ForceMap& map, double low, double high) {
   const std::vector<double> x = display_levels(map.x, map.quantity_unit), half = half_steps(x);
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (map.sigma[i] > 0.0) continue;
-    gaps.x.insert(gaps.x.end(), {x[i] - half[i], x[i] + half[i], nan});
-    gaps.lo.insert(gaps.lo.end(), {low, low, nan});
-    gaps.hi.insert(gaps.hi.end(), {high, high, nan});
+    gaps.x.insert(gaps.x.end(), {x[i] - half[i], x[i] + half[i], no_point});
+    gaps.lo.insert(gaps.lo.end(), {low, low, no_point});
+    gaps.hi.insert(gaps.hi.end(), {high, high, no_point});
   }
   return gaps;
 }
@@ -67,7 +64,7 @@ void add_map(const ForceMap& map, const MapLook& look, Panel& panel) {
       look.key + "amplitude", look.legend, Style::error_bars, look.colour, x, display_values(map.amplitude, map.port_unit), {}, {}};
   double low = 0.0, high = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!(sigma[i] > 0.0)) amplitude.y[i] = nan;
+    if (!(sigma[i] > 0.0)) amplitude.y[i] = no_point;
     amplitude.lo.push_back(amplitude.y[i] - sigma[i]);
     amplitude.hi.push_back(amplitude.y[i] + sigma[i]);
     if (sigma[i] > 0.0) low = std::min(low, amplitude.lo[i]), high = std::max(high, amplitude.hi[i]);
@@ -330,7 +327,7 @@ Figure missing_force_by_figure(const MissingForce& missing, const std::string& q
   const std::string unit = q < missing.quantities.size() ? missing.quantity_units[q] : "-";
   figure.x_unit = display_level_unit(unit);
   const std::vector<double> x =
-      q < missing.quantities.size() ? display_levels(missing.values[q], unit) : std::vector<double>(missing.t.size(), nan);
+      q < missing.quantities.size() ? display_levels(missing.values[q], unit) : std::vector<double>(missing.t.size(), no_point);
   for (std::size_t p = 0; p < missing.ports.size(); ++p) {
     Panel panel{.y_label = missing.ports[p], .y_unit = display_unit(missing.port_units[p]), .height = 200.0, .zero_line = true};
     panel.series = {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "misfit/core/display.h"
@@ -13,7 +12,6 @@
 namespace misfit::report {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double two_sided = 1.959964;  // of 95 %
 constexpr double limit_95 = 3.841459;   // chi², 1 degree of freedom
 
@@ -24,7 +22,7 @@ std::vector<double> visited(const std::vector<double>& values, const BootstrapCu
   const auto first = std::find_if(curve.count.begin(), curve.count.end(), seen) - curve.count.begin();
   const auto behind = curve.count.rend() - std::find_if(curve.count.rbegin(), curve.count.rend(), seen);
   for (std::ptrdiff_t i = 0; i < std::ssize(out); ++i) {
-    if (i < first || i >= behind) out[i] = nan;
+    if (i < first || i >= behind) out[i] = no_point;
   }
   return out;
 }

@@ -163,15 +163,15 @@ void add_errors(const Rung& rung, std::vector<Panel>& near, std::vector<Panel>& 
 
 void add_trim(const Rung& rung, std::vector<Panel>& panels) {
   if (!rung.trim) return;
-  constexpr double two_sided = 1.96;
+  constexpr double of_95_percent = 1.96;
   const std::string unit = display_unit(rung.trim->unit);
   const double factor = convert(1.0, rung.trim->unit, unit);
   Series& series = series_for(panel_for(panels, "trim", unit), {"trim", "trim, 95 % interval", Style::error_bars, palette(0)});
-  add_point(series, rung.id, rung.trim->value * factor, two_sided * rung.trim->sigma * factor);
+  add_point(series, rung.id, rung.trim->value * factor, of_95_percent * rung.trim->sigma * factor);
 }
 
 /// Least and largest of what is drawn.
-std::array<double, 2> extent_of(const Panel& panel) {
+std::array<double, 2> extent_with_bars(const Panel& panel) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   std::array<double, 2> out{infinite, -infinite};
   for (const Series& s : panel.series) {
@@ -188,7 +188,7 @@ std::array<double, 2> extent_of(const Panel& panel) {
 /// Drops are bars and begin at 0. The others are points: about their values, so that a small change is seen, but at least a tenth of the
 /// value high, so that it does not look large; an amount that falls to a fraction begins at 0.
 void set_range(Panel& panel) {
-  auto [low, high] = extent_of(panel);
+  auto [low, high] = extent_with_bars(panel);
   constexpr double min_drop = 10.0, least_height = 0.1, fraction = 0.5;
   if (panel.y_label == "drop") {
     low = std::min(low, 0.0);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "misfit/core/display.h"
@@ -17,11 +16,9 @@
 namespace misfit::report {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 std::vector<double> masked(std::vector<double> values, const std::vector<bool>& keep) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!keep[i]) values[i] = nan;
+    if (!keep[i]) values[i] = no_point;
   }
   return values;
 }
@@ -60,7 +57,7 @@ std::vector<double> normalised_residuals(const ChannelPrediction& c) {
   std::vector<double> r = residuals(c);
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (std::isfinite(c.sigma[i]) && c.sigma[i] > 0.0) r[i] /= c.sigma[i];
-    if (c.held_out[i]) r[i] = nan;
+    if (c.held_out[i]) r[i] = no_point;
   }
   return r;
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "misfit/core/file_name.h"
 #include "misfit/report/figure_units.h"
@@ -8,8 +7,6 @@
 
 namespace misfit::report {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Lost samples, drawn at the height `level`.
 Series losses(const Track& track, double level) {
@@ -23,7 +20,7 @@ Series losses(const Track& track, double level) {
 }
 
 double lowest(const std::vector<double>& values) {
-  double out = nan;
+  double out = no_point;
   for (double v : values) {
     if (std::isfinite(v) && !(v > out)) out = v;
   }

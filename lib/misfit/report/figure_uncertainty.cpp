@@ -13,11 +13,9 @@
 namespace misfit::report {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 /// `values` where `keep` holds, or beside such a place, so that two lines meet.
 std::vector<double> kept(const std::vector<double>& values, const std::vector<bool>& keep) {
-  std::vector<double> out(values.size(), nan);
+  std::vector<double> out(values.size(), no_point);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (keep[i] || (i > 0 && keep[i - 1]) || (i + 1 < values.size() && keep[i + 1])) out[i] = values[i];
   }

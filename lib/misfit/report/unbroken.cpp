@@ -14,17 +14,17 @@ using namespace std::string_view_literals;
 
 constexpr std::string_view minus = "\u2212", no_break = "\u00a0", plus_minus = "±";
 
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 /// Whether the hyphen at `at` is the sign of a number or of its exponent.
 bool is_sign(const std::string& text, std::size_t at) {
-  if (at + 1 >= text.size() || (!is_digit(text[at + 1]) && text[at + 1] != '.')) return false;
+  if (at + 1 >= text.size() || (!is_decimal(text[at + 1]) && text[at + 1] != '.')) return false;
   if (at == 0) return true;
   const std::string_view so_far = std::string_view(text).substr(0, at);
   for (const std::string_view before : {" "sv, "("sv, "["sv, "<"sv, "|"sv, "≈"sv, plus_minus, no_break}) {
     if (so_far.ends_with(before)) return true;
   }
-  return text[at - 1] == 'e' && at > 1 && is_digit(text[at - 2]);
+  return text[at - 1] == 'e' && at > 1 && is_decimal(text[at - 2]);
 }
 
 /// "12.0", "(−3", "1e−60", "0.1)e7": what a unit or a ± may follow.
@@ -33,11 +33,11 @@ bool ends_a_number(std::string_view word) {
     if (const std::size_t at = word.find(sign); at < 2) word.remove_prefix(at + sign.size());
   }
   while (word.starts_with('(') || word.starts_with('+') || word.starts_with('<')) word.remove_prefix(1);
-  if (word.empty() || !is_digit(word.front()) || (!is_digit(word.back()) && word.back() != ')')) return false;
+  if (word.empty() || !is_decimal(word.front()) || (!is_decimal(word.back()) && word.back() != ')')) return false;
   for (std::size_t at = 0; at < word.size(); ++at) {
     if (word.substr(at).starts_with(minus)) {
       at += minus.size() - 1;
-    } else if (!is_digit(word[at]) && ".e)+"sv.find(word[at]) == std::string_view::npos) {
+    } else if (!is_decimal(word[at]) && ".e)+"sv.find(word[at]) == std::string_view::npos) {
       return false;
     }
   }
@@ -52,7 +52,7 @@ std::string_view without_punctuation(std::string_view word) {
 /// "in" behind a number is nearly always the preposition.
 bool is_unit(std::string_view word) {
   constexpr std::size_t longest = 24;
-  if (word.empty() || word.size() > longest || word == "in" || word == "-" || is_digit(word.front())) return word.starts_with("1/");
+  if (word.empty() || word.size() > longest || word == "in" || word == "-" || is_decimal(word.front())) return word.starts_with("1/");
   try {
     static_cast<void>(parse_unit(word));
     return true;

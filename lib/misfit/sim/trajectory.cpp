@@ -65,7 +65,7 @@ class Sensitivity {
 };
 
 /// A run as it stands at a sample, and scratch memory.
-struct State {
+struct StretchState {
   std::array<double, kMaxStates> x{};
   Sensitivity S;  ///< ∂x/∂(θ, x0)
   std::vector<double> D, row;
@@ -73,7 +73,7 @@ struct State {
   std::array<double, kMaxSensorPorts> y{};
   SampledOutputs outputs;
 
-  State(const Simulation& simulation, const Stretch& stretch)
+  StretchState(const Simulation& simulation, const Stretch& stretch)
       : S(simulation.stepper.states(), stretch.sensitivities ? simulation.stepper.evaluator().columns() : 0),
         D(simulation.stepper.states() * kRowStride),
         row(S.empty_row()),
@@ -86,7 +86,7 @@ struct State {
 double* output_row(std::size_t i, int o, int outputs, Segment& out) { return out.y_rows.row((i - out.first) * outputs + o).data(); }
 
 /// Outputs that are states as they stand: their rows are those of S.
-void copy_states(const Evaluator& evaluator, State& at, double* rows) {
+void copy_states(const Evaluator& evaluator, StretchState& at, double* rows) {
   const Sensitivity& S = at.S;
   for (int o = 0; o < evaluator.outputs(); ++o) {
     at.y[o] = at.x[evaluator.observed(o)];
@@ -96,7 +96,7 @@ void copy_states(const Evaluator& evaluator, State& at, double* rows) {
 }
 
 /// Rows of ∂y/∂(θ, x0) at sample i into out.y_rows.
-bool predict_linear(const Simulation& simulation, std::size_t i, State& at, Segment& out) {
+bool predict_linear(const Simulation& simulation, std::size_t i, StretchState& at, Segment& out) {
   Evaluator& evaluator = simulation.stepper.evaluator();
   const int ny = evaluator.outputs();
   if (evaluator.outputs_are_states()) {
@@ -149,7 +149,7 @@ void run_in_batches(const Simulation& simulation, const Stretch& stretch, Segmen
   const auto& [first, last, x0, sensitivities, batch] = stretch;
   Stepper& stepper = simulation.stepper;
   const int n = stepper.states(), ny = stepper.evaluator().outputs();
-  State at(simulation, stretch);
+  StretchState at(simulation, stretch);
   // Rows copied from S need no look of their own: what is not finite in S stays so up to the end.
   const bool rows_differ = sensitivities && !stepper.evaluator().outputs_are_states();
   const auto begin_batch = [&](std::size_t from) {

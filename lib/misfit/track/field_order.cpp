@@ -4,13 +4,13 @@
 
 #include <cmath>
 
+#include "misfit/track/search.h"
+
 namespace misfit {
 namespace {
 
 constexpr double min_motion = 1.0;  // [px per frame]
 constexpr std::size_t min_pairs = 6;
-
-double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
 FieldOrder order_of(const FieldEvidence& e) {
   if (e.motion < min_motion) return FieldOrder::unknown;

@@ -16,9 +16,9 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_unknowns, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_unknowns, max_unknowns>;
 
 constexpr int sectors = 8;
-constexpr double min_sigma = 0.01;                                       // [px] no edge is the formula of marker.h to better than that
-constexpr int alike_columns = 4, alike_lines = 2;                        // how far residuals of texture and compression are alike
-constexpr double min_outer = 2.0, largest_outer = 30.0, min_edge = 0.6;  // [px]
+constexpr double min_sigma = 0.01;                                      // [px] no edge is the formula of marker.h to better than that
+constexpr int alike_columns = 4, alike_lines = 2;                       // how far residuals of texture and compression are alike
+constexpr double least_outer = 2.0, most_outer = 30.0, min_edge = 0.6;  // [px]
 
 /// Pixels taken into account: image columns and rows, ends included.
 struct Window {
@@ -181,7 +181,7 @@ class Fitter {
       tilt_y_ += step(3 + levels_);
     }
     if (!shape_) return;
-    marker_.outer = std::clamp(marker_.outer + step(first_shape_), min_outer, largest_outer);
+    marker_.outer = std::clamp(marker_.outer + step(first_shape_), least_outer, most_outer);
     if (marker_.kind == MarkerKind::ring)
       marker_.inner = std::clamp(marker_.inner + step(first_shape_ + 1), 0.15 * marker_.outer, 0.9 * marker_.outer);
     marker_.edge = std::clamp(marker_.edge + step(unknowns_ - 1), min_edge, 0.8 * marker_.outer);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "misfit/track/marker.h"
@@ -15,6 +16,9 @@ struct Region {
 [[nodiscard]] inline bool contains(const Region& r, const PixelPoint& p) {
   return p.column >= r.left && p.column <= r.right && p.row >= r.top && p.row <= r.bottom;
 }
+
+/// [px]
+[[nodiscard]] inline double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
 struct Match {
   PixelPoint at;

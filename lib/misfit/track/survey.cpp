@@ -18,8 +18,6 @@ constexpr long min_frames = 30, max_frames = 60;
 constexpr long max_empty_frames = 40, stride_after = 20;  // nothing found in the first ones: every twentieth frame from there on
 constexpr std::size_t min_found = 12;                     // fields, before one size is believed
 
-double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
-
 /// Fits every candidate; keeps the possible ones, each place once (the best explained).
 std::vector<Location> fit_all(const Field& field, const Marker& marker, const std::vector<Match>& candidates) {
   std::vector<Location> out;

@@ -80,7 +80,7 @@ void fit_line(const std::vector<Vector2d>& places, Side& side) {
 
 /// The side between two corners; nullopt where it is not a straight edge from black to white on most of its way.
 std::optional<Side> side_between(const Image& image, const Vector2d& from, const Vector2d& to, double reach) {
-  constexpr double ends = 0.85, least_share = 0.85, largest_error = 0.5;  // of half the way; of the places; [px]
+  constexpr double ends = 0.85, share_of_places = 0.85, largest_error = 0.5;  // of half the way; of the places; [px]
   const double length = (to - from).norm();
   if (!(length > 0.0)) return std::nullopt;
   Side side{0.5 * (from + to), 0.5 * (to - from), Vector2d(to.y() - from.y(), from.x() - to.x()) / length};
@@ -90,7 +90,7 @@ std::optional<Side> side_between(const Image& image, const Vector2d& from, const
     const double s = ends * (2.0 * k / (count - 1.0) - 1.0);
     if (const auto offset = edge_at(image, side.at(s), side.outwards, reach)) places.emplace_back(s, *offset);
   }
-  if (static_cast<double>(places.size()) < least_share * count) return std::nullopt;
+  if (static_cast<double>(places.size()) < share_of_places * count) return std::nullopt;
   fit_line(places, side);
   std::vector<double> off;
   for (const Vector2d& p : places) off.push_back(p.y() - side.offset - p.x() * side.tilt);

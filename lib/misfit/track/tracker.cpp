@@ -8,18 +8,16 @@
 namespace misfit {
 namespace {
 
-constexpr double min_score = 0.45;  // of the correlation, before the fit
+constexpr double score_of_tracking = 0.45;  // of the correlation, before the fit
 constexpr std::size_t candidates = 4;
 constexpr double gate_sigmas = 5.0;
-constexpr double min_gate = 5.0;                         // [px]
-constexpr double first_acceleration = 3.0;               // [px per field²] until seen
-constexpr int max_missed_fields = 90, stride_after = 3;  // lost for long: every third field is searched
-constexpr double start_radius = 40.0;                    // [px]
-constexpr std::size_t min_run = 3;                       // fields: shorter finds are not believed
+constexpr double min_gate = 5.0;                             // [px]
+constexpr double first_acceleration = 3.0;                   // [px per field²] until seen
+constexpr int max_missed_fields = 90, stride_when_lost = 3;  // lost for long: every third field is searched
+constexpr double radius_about_start = 40.0;                  // [px]
+constexpr std::size_t min_run = 3;                           // fields: shorter finds are not believed
 constexpr double min_acceleration = 0.5;
 constexpr double forgetting_factor = 0.99, contrast_forgetting = 0.9;
-
-double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
 }  // namespace
 
@@ -70,16 +68,17 @@ std::optional<Location> Tracker::look(const Field& field, Loss& why) {
   const PixelPoint middle = expected();
   const double radius = gate();
   const bool everywhere = !held_ || radius > 0.35 * field.image.width;
-  if (everywhere && missed_ > max_missed_fields && missed_ % stride_after != 0) return std::nullopt;
+  if (everywhere && missed_ > max_missed_fields && missed_ % stride_when_lost != 0) return std::nullopt;
   if (!everywhere)
     region = intersection(region, {middle.column - radius, middle.row - radius, middle.column + radius, middle.row + radius});
   if (samples_.empty() && options_.start) {
     const PixelPoint& s = *options_.start;
-    region = intersection(region, {s.column - start_radius, s.row - start_radius, s.column + start_radius, s.row + start_radius});
+    region = intersection(
+        region, {s.column - radius_about_start, s.row - radius_about_start, s.column + radius_about_start, s.row + radius_about_start});
   }
   std::optional<Location> best;
   double best_merit = -1.0;
-  for (const Match& c : search(field, options_.look.marker, region, min_score, candidates)) {
+  for (const Match& c : search(field, options_.look.marker, region, score_of_tracking, candidates)) {
     const Location found = locate(field, options_.look.marker, c.at);
     const Loss loss = judge(found, options_.look, contrast_);
     if (loss != Loss::none) {

@@ -10,21 +10,21 @@
 namespace misfit {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
 
 /// Value of a curve at x by linear interpolation, NaN outside its grid.
 double value_at(const CurveEstimate& curve, double x) {
   const auto next = std::lower_bound(curve.x.begin(), curve.x.end(), x);
-  if (next == curve.x.end()) return nan;
+  if (next == curve.x.end()) return not_computed;
   const std::size_t i = next - curve.x.begin();
   if (curve.x[i] == x) return curve.value[i];
-  if (i == 0) return nan;
+  if (i == 0) return not_computed;
   const double share = (x - curve.x[i - 1]) / (curve.x[i] - curve.x[i - 1]);
   return curve.value[i - 1] + share * (curve.value[i] - curve.value[i - 1]);
 }
 
 struct Spread {
-  double mean = nan, sigma = nan, lower = nan, upper = nan;
+  double mean = not_computed, sigma = not_computed, lower = not_computed, upper = not_computed;
   std::size_t runs = 0;
 };
 
@@ -75,12 +75,12 @@ std::vector<double> BlockBootstrap::numbers_of(const Fit& fit) const {
   out.reserve(size_);
   for (const auto& name : names_) {
     const auto found = fit.parameters.find(name);
-    out.push_back(found == fit.parameters.end() ? nan : found->second.value);
+    out.push_back(found == fit.parameters.end() ? not_computed : found->second.value);
   }
-  out.push_back(fit.trim ? fit.trim->value : nan);
+  out.push_back(fit.trim ? fit.trim->value : not_computed);
   for (const auto& nominal : fit_.curves) {
     const auto found = std::find_if(fit.curves.begin(), fit.curves.end(), [&](const auto& c) { return c.name == nominal.name; });
-    for (double x : nominal.x) out.push_back(found == fit.curves.end() ? nan : value_at(*found, x));
+    for (double x : nominal.x) out.push_back(found == fit.curves.end() ? not_computed : value_at(*found, x));
   }
   return out;
 }

@@ -10,9 +10,9 @@
 namespace misfit {
 namespace {
 
-constexpr double rounding = 0.3;     // of an interval: how much later a timestamp may be than the time it stands for
-constexpr double near_ahead = 2.0;   // [s] decoded on, rather than sought
-constexpr double before_seek = 0.5;  // [s] by which a seek aims earlier, since decoders begin at what they can decode alone
+constexpr double rounding_of_timestamps = 0.3;  // of an interval: how much later a timestamp may be than the time it stands for
+constexpr double near_ahead = 2.0;              // [s] decoded on, rather than sought
+constexpr double before_seek = 0.5;             // [s] by which a seek aims earlier, since decoders begin at what they can decode alone
 
 }  // namespace
 
@@ -58,7 +58,7 @@ void FrameReader::read_until(double t) {
 }
 
 std::optional<FramePicture> FrameReader::at(double t) {
-  const double latest = std::max(t, 0.0) + rounding * interval_;
+  const double latest = std::max(t, 0.0) + rounding_of_timestamps * interval_;
   const bool passed = !shown_ || shown_->t > latest, far = ahead_ && ahead_->t < latest - near_ahead;
   if ((passed || far) && !seek(latest)) begin();
   read_until(latest);

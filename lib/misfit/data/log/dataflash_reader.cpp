@@ -12,7 +12,7 @@
 namespace misfit {
 namespace {
 
-constexpr std::size_t head = 3, format_size = 89;
+constexpr std::size_t head_size = 3, format_size = 89;
 constexpr std::uint64_t format_type = 128;
 
 /// A letter of a format: bytes, and the number they are; text and arrays are no numbers.
@@ -46,7 +46,7 @@ constexpr std::array<Letter, 21> letters = {{{'a', 64, false, NumberKind::signed
                                              {'M', 1, true, NumberKind::unsigned_integer, 1.0}}};
 
 /// What a FMT message says of a type of message.
-struct Format {
+struct MessageFormat {
   std::string name;
   std::size_t size = 0;  ///< with its head
   std::vector<Letter> letters;
@@ -99,14 +99,14 @@ class DataFlashReader : public RecordReader {
       }
       const std::uint64_t type = format->first;
       const std::size_t size = format->second.size;  // a FMT may change it
-      take(type, bytes_.data().subspan(at + head, size - head));
+      take(type, bytes_.data().subspan(at + head_size, size - head_size));
       at += size;
     }
   }
 
   /// Of the message that begins at `at`; end() if none does.
-  [[nodiscard]] std::map<std::uint64_t, Format>::const_iterator format_at(std::size_t at) const {
-    const bool marked = bytes_.has(at, head) && bytes_.data()[at] == std::byte{0xA3} && bytes_.data()[at + 1] == std::byte{0x95};
+  [[nodiscard]] std::map<std::uint64_t, MessageFormat>::const_iterator format_at(std::size_t at) const {
+    const bool marked = bytes_.has(at, head_size) && bytes_.data()[at] == std::byte{0xA3} && bytes_.data()[at + 1] == std::byte{0x95};
     return marked ? formats_.find(bytes_.unsigned_at(at + 2, 1, "")) : formats_.end();
   }
 
@@ -142,8 +142,8 @@ class DataFlashReader : public RecordReader {
 
   void read_format(const Bytes& record) {
     const std::uint64_t type = record.unsigned_at(0, 1, "");
-    Format format{record.text(2, 4, ""), record.unsigned_at(1, 1, ""), {}, {}, "", ""};
-    std::size_t size = head;
+    MessageFormat format{record.text(2, 4, ""), record.unsigned_at(1, 1, ""), {}, {}, "", ""};
+    std::size_t size = head_size;
     for (const char c : record.text(6, 16, "")) {
       const auto letter = std::find_if(letters.begin(), letters.end(), [&](const Letter& l) { return l.letter == c; });
       if (letter == letters.end()) break;
@@ -156,7 +156,7 @@ class DataFlashReader : public RecordReader {
       format.columns.push_back(columns.substr(at, end - at));
       at = end + 1;
     }
-    if (type == format_type || format.size < head) return;
+    if (type == format_type || format.size < head_size) return;
     if (size != format.size) {
       format.columns.clear();
       odd_.insert(format.name);
@@ -164,7 +164,7 @@ class DataFlashReader : public RecordReader {
     formats_[type] = std::move(format);
   }
 
-  std::uint64_t instance(const Format& format, std::span<const std::byte> record) const {
+  std::uint64_t instance(const MessageFormat& format, std::span<const std::byte> record) const {
     const std::size_t column = format.instance();
     if (column == format.columns.size()) return 0;
     const Letter& letter = format.letters[column];
@@ -188,7 +188,7 @@ class DataFlashReader : public RecordReader {
       if (found.size() < most) found.insert({type, instance(formats_[type], record)});
     });
     for (const Key& key : found) {
-      const Format& format = formats_[key.first];
+      const MessageFormat& format = formats_[key.first];
       if (format.columns.empty() || is_of_format(format.name)) continue;
       topic_of_[key] = topics_.size();
       topics_.push_back(topic(format, key.second));
@@ -201,7 +201,7 @@ class DataFlashReader : public RecordReader {
     return name == "FMT" || name == "FMTU" || name == "UNIT" || name == "MULT" || name == "PARM";
   }
 
-  [[nodiscard]] RecordTopic topic(const Format& format, std::uint64_t number) const {
+  [[nodiscard]] RecordTopic topic(const MessageFormat& format, std::uint64_t number) const {
     const bool several = format.instance() < format.columns.size();
     RecordTopic out{several ? format.name + "[" + std::to_string(number) + "]" : format.name, {}, 0, 0, 0};
     for (std::size_t i = 0; i < format.columns.size(); ++i) {
@@ -217,7 +217,7 @@ class DataFlashReader : public RecordReader {
   }
 
   /// "m" with a multiplier of 0.01 is "cm"; letters with a multiplier of their own are in the unit itself.
-  [[nodiscard]] std::string unit(const Format& format, std::size_t column) const {
+  [[nodiscard]] std::string unit(const MessageFormat& format, std::size_t column) const {
     if (column >= format.units.size()) return "";
     const auto found = unit_.find(format.units[column]);
     if (found == unit_.end()) return "";
@@ -232,7 +232,7 @@ class DataFlashReader : public RecordReader {
   }
 
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // type and instance
-  std::map<std::uint64_t, Format> formats_;
+  std::map<std::uint64_t, MessageFormat> formats_;
   std::map<std::uint64_t, std::pair<std::string, std::string>> units_of_;
   std::map<char, std::string> unit_;
   std::map<char, double> multiplier_;

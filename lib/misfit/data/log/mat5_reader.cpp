@@ -12,7 +12,7 @@
 namespace misfit {
 namespace {
 
-constexpr std::size_t head_size = 128;
+constexpr std::size_t bytes_of_head = 128;
 constexpr std::uint64_t matrix = 14, compressed = 15;
 
 enum class MatClass : std::uint8_t { cell = 1, structure = 2, object = 3, text = 4, sparse = 5, first_number = 6, last_number = 15 };
@@ -36,7 +36,7 @@ class Mat5Reader : public LogReader {
     log_.source = bytes.source();
     log_.format = "MAT (MATLAB, version 5)";
     read_head();
-    for (std::size_t at = head_size; at < bytes_.size();) {
+    for (std::size_t at = bytes_of_head; at < bytes_.size();) {
       const Element variable = element(bytes_, at);
       if (variable.type != matrix && variable.type != compressed)
         bytes_.fail(at, "a matrix is expected, not an element of type " + std::to_string(variable.type));

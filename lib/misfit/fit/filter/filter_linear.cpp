@@ -4,11 +4,10 @@
 #include "misfit/fit/filter/filter_run.h"
 #include "misfit/fit/filter/filter_sizes.h"
 #include "misfit/fit/filter/filter_steps.h"
+#include "misfit/fit/filter/normal_density.h"
 
 namespace misfit {
 namespace {
-
-constexpr double log_two_pi = 1.8378770664093453;
 
 template <int M, int NY>
 Innovations run_linear_as(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise) {
@@ -64,7 +63,7 @@ double minus_loglik(const FilterData& data, const Innovations& innovations) {
   const auto& [e, S] = innovations;
   double sum = 0.0;
   for (std::size_t i = 0; i < e.size(); ++i) {
-    if (data.use[i] == SampleRole::counted) sum += 0.5 * (log_two_pi + std::log(S[i]) + e[i] * e[i] / S[i]);
+    if (data.use[i] == SampleRole::counted) sum += minus_log_normal(e[i], S[i]);
   }
   return sum;
 }

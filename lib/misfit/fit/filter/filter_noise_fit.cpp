@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/fit/filter/normal_density.h"
 #include "misfit/jobs/work_queue.h"
 
 namespace misfit {
@@ -20,7 +21,7 @@ Innovations run_all(const LinearisedRuns& runs, const FilterNoise& noise) {
   return out;
 }
 
-std::vector<bool> counted(const LinearisedRuns& runs) {
+std::vector<bool> counted_innovations(const LinearisedRuns& runs) {
   std::vector<bool> out;
   for (const auto& data : *runs.data) {
     for (SampleRole use : data.use) out.push_back(use == SampleRole::counted);
@@ -29,10 +30,9 @@ std::vector<bool> counted(const LinearisedRuns& runs) {
 }
 
 double cost(const Innovations& s, const std::vector<bool>& counts) {
-  constexpr double log_two_pi = 1.8378770664093453;
   double sum = 0.0;
   for (std::size_t i = 0; i < s.e.size(); ++i) {
-    if (counts[i]) sum += 0.5 * (log_two_pi + std::log(s.S[i]) + s.e[i] * s.e[i] / s.S[i]);
+    if (counts[i]) sum += minus_log_normal(s.e[i], s.S[i]);
   }
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
@@ -40,7 +40,7 @@ double cost(const Innovations& s, const std::vector<bool>& counts) {
 class Scoring {
  public:
   Scoring(const LinearisedRuns& runs, const NoiseVector& start, int threads)
-      : runs_(runs), vector_(start), threads_(threads), counts_(counted(runs)) {}
+      : runs_(runs), vector_(start), threads_(threads), counts_(counted_innovations(runs)) {}
 
   Eigen::MatrixXd information(const std::vector<double>& at) {
     derivatives(at, run_all(runs_, unpacked(at)));

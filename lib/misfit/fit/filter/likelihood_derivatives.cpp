@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "misfit/fit/filter/normal_density.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/math/covariance.h"
 
@@ -173,9 +174,8 @@ Eigen::Index counted_measurements(const FilterEstimate& estimate) {
 }  // namespace
 
 double log_density(const FilterTrace& trace, std::size_t place) {
-  constexpr double log_two_pi = 1.8378770664093453;
   if (!(trace.S[place] > 0.0)) return 0.0;
-  return -0.5 * (log_two_pi + std::log(trace.S[place]) + trace.e[place] * trace.e[place] / trace.S[place]);
+  return -minus_log_normal(trace.e[place], trace.S[place]);
 }
 
 double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {

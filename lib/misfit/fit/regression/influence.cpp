@@ -32,21 +32,21 @@ std::vector<double> running_means(const std::vector<double>& values, std::size_t
   return out;
 }
 
-struct Past {
+struct LaggedPast {
   std::vector<double> values, means;
   bool driver = false;
 };
 
-std::size_t regressors_of(const std::vector<Past>& columns) {
+std::size_t regressors_of(const std::vector<LaggedPast>& columns) {
   std::size_t out = 0;
-  for (const Past& c : columns) out += c.driver ? per_driver : per_column;
+  for (const LaggedPast& c : columns) out += c.driver ? per_driver : per_column;
   return out;
 }
 
 /// Sums of squares of y's change in the regressors of the first `columns` columns and a constant, on stretches taken in turn.
-class Regression {
+class LagRegression {
  public:
-  Regression(const std::vector<Past>& columns, std::size_t ahead) {
+  LagRegression(const std::vector<LaggedPast>& columns, std::size_t ahead) {
     const Eigen::Index n = static_cast<Eigen::Index>(regressors_of(columns)) + 1;
     fitted_ = held_out_ = SquaresForm(n);
     const std::size_t rows = columns.front().values.size();
@@ -76,9 +76,9 @@ class Regression {
   }
 
  private:
-  static void fill(const std::vector<Past>& columns, std::size_t k, std::size_t ahead, Eigen::VectorXd& row) {
+  static void fill(const std::vector<LaggedPast>& columns, std::size_t k, std::size_t ahead, Eigen::VectorXd& row) {
     Eigen::Index at = 0;
-    for (const Past& c : columns) {
+    for (const LaggedPast& c : columns) {
       row[at++] = c.values[k];
       for (const std::size_t back : {std::size_t{0}, ahead, 2 * ahead}) row[at++] = c.means[k - back];
       if (!c.driver) continue;
@@ -99,7 +99,7 @@ Influence influence_on(const std::vector<double>& y, const std::vector<std::vect
   constexpr std::size_t parts = 32;  // window_length() is two swings
   const std::size_t ahead = std::max<std::size_t>(window_length(own) / parts, 1), mean = std::max<std::size_t>(ahead / 2, 1);
   if (others.size() + drivers.size() == 0 || y.size() < 16 * ahead) return {};
-  std::vector<Past> columns{{own, running_means(own, mean), false}};
+  std::vector<LaggedPast> columns{{own, running_means(own, mean), false}};
   for (const bool driver : {false, true}) {
     for (const auto& other : driver ? drivers : others) {
       if (mean_and_sigma(other).constant()) continue;
@@ -107,7 +107,7 @@ Influence influence_on(const std::vector<double>& y, const std::vector<std::vect
       columns.push_back({values, running_means(values, mean), driver});
     }
   }
-  const Regression regression(columns, ahead);
+  const LagRegression regression(columns, ahead);
   const double total = regression.left(0);
   if (!regression.enough() || !(total > 0.0)) return {};
   const double alone = regression.left(per_column), all = regression.left(regressors_of(columns));

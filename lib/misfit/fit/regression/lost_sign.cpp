@@ -13,7 +13,7 @@ namespace misfit {
 namespace {
 
 /// The regression's samples: of each experiment in turn, without those whose past is missing.
-struct Regression {
+struct SignRegression {
   struct Row {
     std::size_t experiment = 0, sample = 0;
     bool counted = true;  ///< not held out
@@ -48,8 +48,8 @@ bool finite(const std::vector<double>& values) {
 }
 
 /// Empty where an experiment lacks the output, or there are too few samples.
-Regression regression_of(const std::vector<Signals>& experiments, const std::string& output) {
-  Regression out;
+SignRegression regression_of(const std::vector<Signals>& experiments, const std::string& output) {
+  SignRegression out;
   std::vector<double> values;
   std::size_t columns = 0;
   for (std::size_t e = 0; e < experiments.size(); ++e) {
@@ -81,7 +81,7 @@ struct SignedFit {
 };
 
 /// The coefficients and the squares of what is left, by the counted samples.
-void fit_coefficients(const Regression& of, SignedFit& fit) {
+void fit_coefficients(const SignRegression& of, SignedFit& fit) {
   const Eigen::Index width = of.r.cols() + 2;
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(width, width);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(width), x(width);
@@ -113,7 +113,7 @@ struct BestPaths {
 
 int least_of(const std::array<double, pairs>& cost) { return static_cast<int>(std::min_element(cost.begin(), cost.end()) - cost.begin()); }
 
-BestPaths best_paths(const Regression& of, const Eigen::VectorXd& coefficients) {
+BestPaths best_paths(const SignRegression& of, const Eigen::VectorXd& coefficients) {
   const std::size_t n = of.rows.size();
   BestPaths out{std::vector<std::array<int, pairs>>(n), std::vector<int>(n, 0)};
   std::array<double, pairs> cost{};
@@ -144,7 +144,7 @@ BestPaths best_paths(const Regression& of, const Eigen::VectorXd& coefficients) 
 }
 
 /// The signs that leave the least squares with these coefficients, by dynamic programming over the pairs of a sample and the one before.
-void choose_signs(const Regression& of, SignedFit& fit) {
+void choose_signs(const SignRegression& of, SignedFit& fit) {
   const BestPaths best = best_paths(of, fit.coefficients);
   int pair = best.end;
   for (std::size_t k = of.rows.size(); k-- > 0;) {
@@ -154,7 +154,7 @@ void choose_signs(const Regression& of, SignedFit& fit) {
   }
 }
 
-SignedFit fit_from(const Regression& of, const std::vector<int>& signs) {
+SignedFit fit_from(const SignRegression& of, const std::vector<int>& signs) {
   constexpr int most = 30;
   SignedFit out;
   for (std::size_t k = 0; k < signs.size(); ++k) {
@@ -172,7 +172,7 @@ SignedFit fit_from(const Regression& of, const std::vector<int>& signs) {
 }
 
 /// An output that goes through zero wherever it is near it and least.
-std::vector<int> signs_through_zero(const Regression& of) {
+std::vector<int> signs_through_zero(const SignRegression& of) {
   constexpr double near = 0.1;  // of its largest value
   double largest = 0.0;
   for (const auto& row : of.rows) largest = std::max(largest, row.y);
@@ -186,7 +186,7 @@ std::vector<int> signs_through_zero(const Regression& of) {
   return out;
 }
 
-std::vector<int> signs_of_column(const Regression& of, Eigen::Index column) {
+std::vector<int> signs_of_column(const SignRegression& of, Eigen::Index column) {
   const Eigen::VectorXd r = of.r.col(column);
   const double middle = median(std::vector<double>(r.begin(), r.end()));
   std::vector<int> out;
@@ -194,7 +194,7 @@ std::vector<int> signs_of_column(const Regression& of, Eigen::Index column) {
   return out;
 }
 
-bool is_negative_somewhere(const Regression& of) {
+bool is_negative_somewhere(const SignRegression& of) {
   constexpr double noise = 0.1, rare = 0.01;  // of the usual size
   std::vector<double> sizes;
   for (const auto& row : of.rows) sizes.push_back(std::abs(row.y));
@@ -204,7 +204,7 @@ bool is_negative_somewhere(const Regression& of) {
 }
 
 /// The first input raises it; without inputs it is mostly positive.
-void orient(SignedFit& fit, const Regression& of, bool has_inputs) {
+void orient(SignedFit& fit, const SignRegression& of, bool has_inputs) {
   double sum = 0.0;
   if (has_inputs) sum = fit.coefficients[2] + fit.coefficients[3];
   for (std::size_t k = 0; !has_inputs && k < fit.signs.size(); ++k) sum += fit.signs[k][0] * of.rows[k].y;
@@ -218,7 +218,7 @@ void orient(SignedFit& fit, const Regression& of, bool has_inputs) {
 
 std::optional<SignedRecord> with_signs(const std::vector<Signals>& experiments, const std::string& output) {
   constexpr double most_left = 0.5;
-  const Regression of = regression_of(experiments, output);
+  const SignRegression of = regression_of(experiments, output);
   if (of.rows.empty() || is_negative_somewhere(of)) return std::nullopt;
   SignedFit without;
   without.signs.assign(of.rows.size(), {1, 1, 1});

@@ -11,6 +11,7 @@
 #include "misfit/core/text.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/math/statistics.h"
+#include "misfit/track/search.h"
 #include "misfit/video/video.h"
 #include "misfit/workflow/measure/moving_object.h"
 #include "misfit/workflow/measure/samples.h"
@@ -19,8 +20,6 @@
 
 namespace misfit {
 namespace {
-
-double distance(const PixelPoint& a, const PixelPoint& b) { return std::hypot(a.column - b.column, a.row - b.row); }
 
 /// The tag's way so far.
 class TagWay {
