@@ -251,7 +251,7 @@ TEST(Accept, WholeStepsThatPredictNoBetterAreSaidAllTheSame) {
   EXPECT_FALSE(ranked[0].candidate.accepted);
   EXPECT_THAT(
       ranked[0].candidate.why,
-      testing::HasSubstr("does not rise (-3); the measurements are in whole steps of 0.05 all the same, noise of 0.0144 to a filter"));
+      testing::HasSubstr("does not rise (-3); the measurements are in whole steps of 0.05 all the same, noise of 0.014434 to a filter"));
 }
 
 /// Hysteresis catches a little of the friction and would be accepted by itself; the order is as if it had caught the most.

@@ -146,6 +146,8 @@ void say_none_missing(double p_accept, Discovery& out) {
                 " a family-wise p below " + format_value(p_accept) + " and a held-out gain above ½ per parameter" + closest + ".";
 }
 
+constexpr double share_of_step = 0.05;  ///< that measurements in whole steps may be off by (RMS)
+
 /// The parameter by which all measurements of the effect's output ought to be apart; -1: none.
 int step_of_measurements(const BoundEffect& effect) {
   const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
@@ -280,7 +282,7 @@ std::optional<std::string> off_whole_steps(const Model& model, const std::vector
   const double step = std::abs(p.value);
   for (const Signals& s : experiments) {
     const std::vector<double> values = values_in_fit(s, effect.ports.front());
-    constexpr double share_of_step = 0.05, noises = 2.0;
+    constexpr double noises = 2.0;
     const double noise = measurement_noise(values), off = rms_from_multiples(values, step);
     if (!(off > share_of_step * step + (std::isfinite(noise) ? noises * noise : 0.0))) continue;
     return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + ", but the measurements are " + in_display_unit(off, p.unit) +
@@ -291,9 +293,12 @@ std::optional<std::string> off_whole_steps(const Model& model, const std::vector
 
 std::optional<std::string> on_whole_steps(const Model& model, const std::vector<Signals>& experiments) {
   const int parameter = step_of_measurements(model.effects.back());
-  if (parameter < 0 || off_whole_steps(model, experiments)) return std::nullopt;
+  if (parameter < 0) return std::nullopt;
   const Parameter& p = model.parameters[parameter];
   const double step = std::abs(p.value);
+  const int output = model.effects.back().ports.front();
+  const auto off = [&](const Signals& s) { return rms_from_multiples(values_in_fit(s, output), step) > share_of_step * step; };
+  if (std::any_of(experiments.begin(), experiments.end(), off)) return std::nullopt;
   return "the measurements are in whole steps of " + in_display_unit(step, p.unit) + " all the same, noise of " +
          in_display_unit(step / std::sqrt(12.0), p.unit) + " to a filter";
 }

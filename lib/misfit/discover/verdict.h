@@ -54,8 +54,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 [[nodiscard]] std::optional<std::string> off_whole_steps(const Model& model, const std::vector<Signals>& experiments);
 
 /// "the measurements are in whole steps of 0.059 K all the same, noise of 0.017 K to a filter" where the model's last effect reads an
-/// output in whole steps and off_whole_steps() finds them: step/sqrt(12) as in B. Widrow, I. Kollar, Quantization Noise (2008), ch. 4,
-/// where the output passes through many steps. nullopt: no such effect, or they are not.
+/// output in whole steps and all measurements that enter the fit are within 0.05 of a step (RMS) from them: step/sqrt(12) as in B. Widrow,
+/// I. Kollar, Quantization Noise (2008), ch. 4, where the output passes through many steps. nullopt: no such effect, or they are not.
 [[nodiscard]] std::optional<std::string> on_whole_steps(const Model& model, const std::vector<Signals>& experiments);
 
 /// "its threshold = -1.9 K is not among the values of Tc, 3.1 to 22 K" where an edge of the model's last effect lies further than a tenth
