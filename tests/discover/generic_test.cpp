@@ -66,6 +66,13 @@ TEST(DiscoverGeneric, FindsHowFastAnActuatorIs) {
   EXPECT_NEAR(found.candidates.front().parameters.at("limited_gain").value, 1.0, 0.02) << "the force acts on the mass with its gain of 1";
 }
 
+/// The side that follows is carried along at once; the refit begins with two of the samples of 50 ms for it, which is a lag.
+TEST(DiscoverGeneric, FindsAPlayWithoutALagBesideIt) {
+  const Discovery found = in_cart("backlash", {{"play_stiffness", 8.0}, {"play", 0.3}, {"backlash_tau", 0.002}});
+  expect_first(found, "backlash", "play", 0.3, 0.1);
+  EXPECT_LT(found.candidates.front().parameters.at("backlash_tau").value, 0.02);
+}
+
 TEST(DiscoverGeneric, FindsADampingThatAnInputSets) {
   const Signals recorded = record_of_cart({effect("bilinear", {{"factor", "v"}})}, {{"product", -0.05}, {"neutral", 0.0}});
   const Discovery found = discovered(cart({effect("viscous_friction")}), {"stiffness"}, recorded);

@@ -294,6 +294,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   if (!in_time && !out.ok) return unfinished(screening, watch.words());
   if (!out.ok) return out;
   if (in_time) narrow_smoothings(work, out);
+  if (in_time) shorten_numerical_times(work, out);
   const bool whole_tried = in_time && fix_whole_strengths(work, screening, out);
   if (whole_tried) try_exchanged_poles(work, out);
   note_half_a_sample(out);

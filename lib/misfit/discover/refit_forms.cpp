@@ -15,6 +15,7 @@
 #include "misfit/discover/drift.h"
 #include "misfit/discover/exchanged_poles.h"
 #include "misfit/discover/operating_range.h"
+#include "misfit/discover/unknown_curves.h"
 #include "misfit/discover/whole_strength.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
@@ -346,6 +347,25 @@ std::optional<Model> with_narrower_bounds(const FilterEstimate& estimate) {
   return out;
 }
 
+/// The estimate's last effect with its numerical times, which it keeps fixed and of which one number of sampling intervals is looked at,
+/// this much shorter; nullopt: it has none.
+std::optional<Model> with_shorter_times(const FilterEstimate& estimate, double share) {
+  const BoundEffect& effect = estimate.model.effects.back();
+  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
+  std::optional<Model> out;
+  for (std::size_t c = 0; c < coefficients.size(); ++c) {
+    const int at = effect.coefficients[c].parameter;
+    const bool numerical =
+        coefficients[c].fixed && coefficients[c].scan.count == 1 && std::string_view(coefficients[c].scan.over) == "step";
+    if (!numerical || at < 0 || estimate.model.parameters[at].free) continue;
+    if (!out) out = estimate.model;
+    Parameter& time = out->parameters[at];
+    time.value *= share;
+    time.lower = std::min(time.lower, time.value);
+  }
+  return out;
+}
+
 }  // namespace
 
 void narrow_smoothings(const RefitWork& work, Refit& out) {
@@ -360,6 +380,26 @@ void narrow_smoothings(const RefitWork& work, Refit& out) {
       if (narrower.out_of_time || !narrower.converged || !(narrower.objective > out.estimate.objective)) return;
       out.estimate = std::move(narrower);
     } catch (const TimeLimitReached&) {  // it stays as wide as it was found
+      return;
+    } catch (const RunError&) {
+      return;
+    }
+  }
+}
+
+void shorten_numerical_times(const RefitWork& work, Refit& out) {
+  constexpr int most = 2;
+  constexpr double shorter = 0.1;
+  for (int k = 0; k < most && out.estimate.converged; ++k) {
+    std::optional<Model> start = with_shorter_times(out.estimate, shorter);
+    if (!start) return;
+    FilterOptions options = options_like(work.without, work.threads);
+    options.noise = out.estimate.noise;
+    try {
+      FilterEstimate there = estimate_filter(*start, penalties_as_of(work.without, *start), work.experiments, options);
+      if (there.out_of_time || !there.converged || !(there.objective > out.estimate.objective + 0.5 * tied_drops)) return;
+      out.estimate = std::move(there);
+    } catch (const TimeLimitReached&) {
       return;
     } catch (const RunError&) {
       return;

@@ -11,6 +11,11 @@ namespace misfit {
 /// resolves more, and the search goes on down to that, as long as the log-likelihood rises.
 void narrow_smoothings(const RefitWork& work, Refit& out);
 
+/// A time in which something follows that in truth follows at once (backlash_tau), fixed at two sampling intervals, goes on to a tenth and
+/// a hundredth of that while the log-likelihood rises by more than tied_drops/2: as long as it is, it is a lag beside the effect, which the
+/// search makes up for with a weaker and wider one.
+void shorten_numerical_times(const RefitWork& work, Refit& out);
+
 /// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood falls
 /// by no more than 2, or a hundredth of what the effect explains (a twentieth, where it was found to 2 % of the whole): from where the
 /// refit has found a part of it, and from the best of its screened shapes, beside the values of the estimate without it or the study's own:
