@@ -99,6 +99,8 @@ std::vector<double> sigmas_of_quantities(const FilterEstimate& estimate) {
 
 }  // namespace
 
+bool is_hardly_seen_between_samples(const CoefficientSpec& c) { return c.fixed && std::string_view(c.scan.over) == "step"; }
+
 bool is_of_a_rate(const ScanSpec& scan) { return scanned_size(scan).kind == ScannedSize::Kind::per_step; }
 
 OperatingRange::Digits OperatingRange::digits_of(const std::vector<double>& measured) {
@@ -159,10 +161,6 @@ std::optional<OperatingRange::Range> OperatingRange::range_of_edge(const BoundEf
 }
 
 namespace {
-
-/// A time that its effect keeps fixed, looked for in sampling intervals: how fast something happens of which the effect says no more than
-/// that it is fast (RateLimit::follow_time).
-bool is_hardly_seen_between_samples(const CoefficientSpec& c) { return c.fixed && std::string_view(c.scan.over) == "step"; }
 
 /// Of the shortest such time that is looked for. Shorter ones look alike, and take ever more steps of integration.
 constexpr double share_of_shortest = 0.2;

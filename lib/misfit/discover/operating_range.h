@@ -7,6 +7,10 @@
 
 namespace misfit {
 
+/// A time that its effect keeps fixed, looked for in sampling intervals: how fast something happens of which the effect says no more than
+/// that it is fast (RateLimit::follow_time).
+[[nodiscard]] bool is_hardly_seen_between_samples(const CoefficientSpec& c);
+
 /// Its values are rates of a role: ScanSpec::over is "|ROLE|/step".
 [[nodiscard]] bool is_of_a_rate(const ScanSpec& scan);
 

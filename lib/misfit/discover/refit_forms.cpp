@@ -366,20 +366,19 @@ std::optional<Model> with_shorter_times(const FilterEstimate& estimate, double s
   return out;
 }
 
-}  // namespace
-
-void narrow_smoothings(const RefitWork& work, Refit& out) {
-  constexpr int most = 8;
+/// The estimate goes on from `next(estimate)`, at `most` times, as long as there is one and the objective rises by more than `least`.
+template <class Next>
+void go_on(const RefitWork& work, Refit& out, int most, double least, const Next& next) {
   for (int k = 0; k < most && out.estimate.converged; ++k) {
-    const std::optional<Model> start = with_narrower_bounds(out.estimate);
+    const std::optional<Model> start = next(out.estimate);
     if (!start) return;
     FilterOptions options = options_like(work.without, work.threads);
     options.noise = out.estimate.noise;
     try {
-      FilterEstimate narrower = estimate_filter(*start, penalties_as_of(work.without, *start), work.experiments, options);
-      if (narrower.out_of_time || !narrower.converged || !(narrower.objective > out.estimate.objective)) return;
-      out.estimate = std::move(narrower);
-    } catch (const TimeLimitReached&) {  // it stays as wide as it was found
+      FilterEstimate there = estimate_filter(*start, penalties_as_of(work.without, *start), work.experiments, options);
+      if (there.out_of_time || !there.converged || !(there.objective > out.estimate.objective + least)) return;
+      out.estimate = std::move(there);
+    } catch (const TimeLimitReached&) {  // what was found stays
       return;
     } catch (const RunError&) {
       return;
@@ -387,24 +386,17 @@ void narrow_smoothings(const RefitWork& work, Refit& out) {
   }
 }
 
+}  // namespace
+
+void narrow_smoothings(const RefitWork& work, Refit& out) {
+  constexpr int most = 8;
+  go_on(work, out, most, 0.0, [](const FilterEstimate& estimate) { return with_narrower_bounds(estimate); });
+}
+
 void shorten_numerical_times(const RefitWork& work, Refit& out) {
   constexpr int most = 2;
   constexpr double shorter = 0.1;
-  for (int k = 0; k < most && out.estimate.converged; ++k) {
-    std::optional<Model> start = with_shorter_times(out.estimate, shorter);
-    if (!start) return;
-    FilterOptions options = options_like(work.without, work.threads);
-    options.noise = out.estimate.noise;
-    try {
-      FilterEstimate there = estimate_filter(*start, penalties_as_of(work.without, *start), work.experiments, options);
-      if (there.out_of_time || !there.converged || !(there.objective > out.estimate.objective + 0.5 * tied_drops)) return;
-      out.estimate = std::move(there);
-    } catch (const TimeLimitReached&) {
-      return;
-    } catch (const RunError&) {
-      return;
-    }
-  }
+  go_on(work, out, most, 0.5 * tied_drops, [](const FilterEstimate& estimate) { return with_shorter_times(estimate, shorter); });
 }
 
 bool free_drifts(const RefitWork& work, Refit& out) {
