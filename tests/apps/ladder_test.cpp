@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <random>
 
 #include "tests/apps/oscillator_study.h"
 #include "tests/apps/short_flight.h"
@@ -352,6 +355,70 @@ TEST(LadderOfAStudyThatChanged, IsBegunAnew) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expect_parts(outcome.err, {"starting a new one"});
   EXPECT_EQ(study.result("ladder.json").size(), 2U);
+}
+
+/// A servo whose drive has a play of 0.05 rad, carried along within a fiftieth of a sample: 25 s at 35 Hz by Euler steps of a
+/// two-hundredth.
+std::string record_of_servo() {
+  constexpr double step = 0.0286, play = 0.05, own_stiffness = 60.0, damping = 9.6;
+  constexpr int samples = 875, parts = 200, held = 11;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::string text = "t[s],u[rad],q[rad]\n";
+  double q = 0.0, rate = 0.0, behind = 0.0, u = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    if (i % held == 0) u = 0.35 * normal(random);
+    char line[80];
+    std::snprintf(line, sizeof line, "%.6f,%.9g,%.9g\n", i * step, u, q + 0.003 * normal(random));
+    text += line;
+    behind = std::clamp(behind, u - play, u + play);
+    for (int k = 0; k < parts; ++k) {
+      rate += step / parts * (own_stiffness * (behind - q) - damping * rate);
+      q += step / parts * rate;
+    }
+  }
+  return text;
+}
+
+TEST(ARungWithAFastTime, IsComparedInStepsThatAreShortEnoughForIt) {
+  const TemporaryFolder folder;
+  folder.write("d.csv", record_of_servo());
+  folder.write("m.toml", R"([states]
+q = { unit = "rad", initial = "free" }
+w = { unit = "rad/s", rate_of = "q", initial = "free" }
+[inputs]
+u = { unit = "rad", hold = "zero_order" }
+[parameters]
+k = { unit = "1/s^2", value = 50.0, bounds = [1.0, 1000.0], free = true }
+c = { unit = "1/s", value = 8.0, bounds = [0.1, 100.0], free = true }
+[equations]
+w = "k*(u - q) - c*w"
+[outputs]
+q = { unit = "rad", noise = 0.004 }
+)");
+  folder.write("study.toml", R"([study]
+name = "servo"
+question = "What does it lack?"
+methods = ["filter_error"]
+[system]
+file = "m.toml"
+[[experiment]]
+name = "steps"
+data = "d.csv"
+[effects]
+)");
+  const std::string at = folder.path().string();
+  ASSERT_EQ(run({"fit", at}).status, 0);
+  const Outcome added = run({"add", at, "backlash", "--at", "displacement=u"});
+  ASSERT_EQ(added.status, 0) << added.err;
+  const json ladder = json::parse(content(folder.path() / "out/ladder.json"));
+  const auto loglik = [&](const std::string& out) {
+    return json::parse(content(folder.path() / out / "fit/filter_error/fit.json")).at("loglik").get<double>();
+  };
+  const double of_fits = 2.0 * (loglik("out/rungs/01_backlash/out") - loglik("out"));
+  EXPECT_GT(of_fits, 100.0);
+  EXPECT_NEAR(ladder.at(1).at("actual_drop").get<double>(), of_fits, 0.1 * of_fits);
+  expect_parts(added.out, {"backlash_tau is fixed at 0.00057"});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "misfit/discover/discover.h"
+#include "misfit/discover/refit_forms.h"
 #include "misfit/discover/verdict.h"
 #include "tests/model/declared_texts.h"
 
@@ -138,6 +139,39 @@ TEST(NoLongerDetermined, NamesTheGainOfALinearMotorBesideTheScaleOfItsSensor) {
   const FilterEstimate rubbed =
       estimate_of(request_of("text", {effect("quadratic_drag", {{"rate", "w"}, {"port", "dw/dt"}})}), *known, signals);
   EXPECT_FALSE(no_longer_determined(rubbed, without)) << "drag and damping are told apart by large speeds";
+}
+
+TEST(NoLongerDetermined, IsNotATimeConstantThatWasTakenForTheLagAndIsNowKnownAsWell) {
+  const auto known = registry_with(motor_text);
+  const std::vector<Signals> signals = {record_of_motor(5, 1e-4, 0.05)};
+  const FilterEstimate without = estimate_of(request_of("text"), *known, signals);
+  FilterEstimate with = without;
+  with.model.parameters[1].value *= 50.0;
+  const double moved = with.model.parameters[1].value;
+  const auto know_to = [&](double share) { with.covariance(1, 1) = std::pow(share * moved / with.model.parameters[1].scale, 2); };
+  know_to(0.02);
+  EXPECT_FALSE(no_longer_determined(with, without)) << "its sigma is as large as the value before, but 2 % of the one now";
+  know_to(0.2);
+  EXPECT_TRUE(no_longer_determined(with, without));
+}
+
+/// What comes late of a system with one input and one output cannot be said; of two outputs, one of which comes late, it can.
+TEST(AWholeDelayOfTheOnlyInput, IsAlsoOneOfTheOnlyOutput) {
+  Refit refit;
+  ModelRequest model = request_of("text", {effect("delay", {{"input", "u"}, {"port", "u"}})});
+  refit.estimate.model = assemble(model, *registry_with(motor_text));
+  note_output_as_late(refit);
+  EXPECT_EQ(refit.also, "") << "a part of the input is late, and the output is not";
+  hold(model, "delayed_gain", 1.0);
+  refit.estimate.model = assemble(model, *registry_with(motor_text));
+  note_output_as_late(refit);
+  EXPECT_THAT(refit.also, HasSubstr("w late by as much, and u not, is the same"));
+  std::string two_outputs = motor_text;
+  two_outputs += "twice = { unit = \"rad/s\", formula = \"2*w\", noise = 0.1 }\n";
+  refit.also.clear();
+  refit.estimate.model = assemble(model, *registry_with(two_outputs));
+  note_output_as_late(refit);
+  EXPECT_EQ(refit.also, "");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ void expect_sub_pixel(MarkerKind k, const Disc& disc, int row_step) {
   for (int n = 0; n < trials; ++n) {
     Disc d = disc;
     d.at = {80.0 + shift(random), 70.0 + shift(random)};
-    const Field field = scene({d}, 160, 140, row_step == 2 ? n % 2 : 0, row_step, 3.0, static_cast<unsigned>(n + 1));
+    const Field field = noisy_picture({d}, 160, 140, row_step == 2 ? n % 2 : 0, row_step, 3.0, static_cast<unsigned>(n + 1));
     const auto found = find_markers(field, kind(k), 3);
     ASSERT_EQ(found.size(), 1U);
     const double x = found[0].at.column - d.at.column, y = found[0].at.row - d.at.row;
@@ -60,7 +60,7 @@ TEST(Locate, ShapesDifferentiateAsTheySay) {
   ring.edge = 2.0;
   Marker picture;
   picture.kind = MarkerKind::picture;
-  picture.picture = scene({{{15.0, 14.0}, 9.0, 4.0}}, 31, 29).image;
+  picture.picture = noisy_picture({{{15.0, 14.0}, 9.0, 4.0}}, 31, 29).image;
   for (const Marker& marker : {ring, picture}) {
     for (double x : {-9.7, -4.2, 0.31, 4.9, 9.3}) {
       for (double y : {-8.1, 0.27, 3.9}) expect_slopes(marker, x, y);
@@ -69,17 +69,17 @@ TEST(Locate, ShapesDifferentiateAsTheySay) {
 }
 
 TEST(FindMarkers, RingsAmongDiscsAreToldApart) {
-  const Field field = scene({{{40.0, 40.0}, 9.0, 4.0}, {{100.0, 50.0}, 9.0, 0.0}, {{150.0, 120.0}, 9.0, 4.0}});
+  const Field field = noisy_picture({{{40.0, 40.0}, 9.0, 4.0}, {{100.0, 50.0}, 9.0, 0.0}, {{150.0, 120.0}, 9.0, 4.0}});
   EXPECT_EQ(find_markers(field, kind(MarkerKind::ring), 5).size(), 2U);
 }
 
 TEST(FindMarkers, NothingIsFoundInNoise) {
   for (MarkerKind k : {MarkerKind::ring, MarkerKind::bright, MarkerKind::dark})
-    EXPECT_TRUE(find_markers(scene({}, 200, 160, 0, 1, 25.0), kind(k), 5).empty()) << name_of(k);
+    EXPECT_TRUE(find_markers(noisy_picture({}, 200, 160, 0, 1, 25.0), kind(k), 5).empty()) << name_of(k);
 }
 
 TEST(FindMarkers, OneThatLeavesTheFrameIsNone) {
-  EXPECT_TRUE(find_markers(scene({{{3.0, 60.0}, 9.0, 4.0}}), kind(MarkerKind::ring), 5).empty());
+  EXPECT_TRUE(find_markers(noisy_picture({{{3.0, 60.0}, 9.0, 4.0}}), kind(MarkerKind::ring), 5).empty());
 }
 
 }  // namespace

@@ -37,8 +37,8 @@ inline double pixel_grey(const std::vector<Disc>& discs, double column, double r
 }
 
 /// A picture of that with white noise.
-inline Field scene(const std::vector<Disc>& discs, int width = 200, int height = 160, int first_row = 0, int row_step = 1,
-                   double noise = 2.0, unsigned seed = 1) {
+inline Field noisy_picture(const std::vector<Disc>& discs, int width = 200, int height = 160, int first_row = 0, int row_step = 1,
+                           double noise = 2.0, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> gauss(0.0, noise);
   Field field{Image(width, (height - first_row + row_step - 1) / row_step), first_row, row_step};

@@ -43,7 +43,7 @@ Result track(const Marker& marker, int count, const std::function<Field(int)>& m
   return out;
 }
 
-Field with(const std::vector<Disc>& discs, int k) { return scene(discs, 200, 160, 0, 1, 3.0, static_cast<unsigned>(k + 1)); }
+Field with(const std::vector<Disc>& discs, int k) { return noisy_picture(discs, 200, 160, 0, 1, 3.0, static_cast<unsigned>(k + 1)); }
 
 TEST(Tracker, FollowsEveryKindOfMarker) {
   const std::vector<std::pair<MarkerKind, Disc>> kinds{

@@ -10,6 +10,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/refit_forms.h"
+#include "misfit/discover/refit_sizes.h"
 #include "misfit/discover/unknown_curves.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/inference/standard_error.h"
@@ -298,6 +299,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   const bool whole_tried = in_time && fix_whole_strengths(work, screening, out);
   if (whole_tried) try_exchanged_poles(work, out);
   note_half_a_sample(out);
+  note_output_as_late(out);
   if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
   note_changes(screening, work.registry, out);
   out.drop = drop_of(out.estimate, without, screening);

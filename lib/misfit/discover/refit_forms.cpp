@@ -14,7 +14,6 @@
 #include "misfit/discover/candidate_model.h"
 #include "misfit/discover/drift.h"
 #include "misfit/discover/exchanged_poles.h"
-#include "misfit/discover/operating_range.h"
 #include "misfit/discover/unknown_curves.h"
 #include "misfit/discover/whole_strength.h"
 #include "misfit/inference/standard_error.h"
@@ -81,10 +80,10 @@ std::string part_of_effect(const FilterEstimate& estimate, const std::vector<Who
 }
 
 /// [log-likelihood] What the whole effect may cost: as much as a free share gains by chance once in a hundred times (half of the 99 %
-/// quantile of a chi² of one degree of freedom), or a hundredth of what it explains, since formulas idealise; a twentieth, where it was
+/// quantile of a chi² of one degree of freedom), or a hundredth of what it explains, since formulas idealise; a tenth, where it was
 /// found to 2 % of the whole, and so is no part.
 double allowed_of_whole(const RefitWork& work, const FilterEstimate& part, const std::vector<WholeStrength>& whole) {
-  constexpr double of_a_part = 3.32, about = 0.02, of_gain = 0.01, of_gain_near = 0.05;
+  constexpr double of_a_part = 3.32, about = 0.02, of_gain = 0.01, of_gain_near = 0.1;
   const bool near = std::all_of(whole.begin(), whole.end(), [&](const WholeStrength& w) {
     return std::abs(part.model.parameters[w.parameter].value / w.value - 1.0) < about;
   });
@@ -325,78 +324,20 @@ void note_half_a_sample(Refit& out) {
       half, straight ? line : constant, straight ? constant : line, join_words(inputs), inputs.size() == 1 ? "is one" : "are such", hold);
 }
 
-namespace {
-
-/// The estimate's last effect with those of its widths that end at their bound bounded by what is resolved there; nullopt: none ends there,
-/// or hardly more is resolved.
-std::optional<Model> with_narrower_bounds(const FilterEstimate& estimate) {
-  constexpr double at_bound = 1.001, clearly = 0.8;
-  const BoundEffect& effect = estimate.model.effects.back();
-  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
-  std::optional<Model> out;
-  for (std::size_t c = 0; c < coefficients.size(); ++c) {
-    const int at = effect.coefficients[c].parameter;
-    if (!coefficients[c].scan.smooths || at < 0) continue;
-    const Parameter& width = estimate.model.parameters[at];
-    if (!width.free || width.value > at_bound * width.lower) continue;
-    const double resolved = OperatingRange(estimate).lower_bound(effect, c);
-    if (!(resolved < clearly * width.lower)) continue;
-    if (!out) out = estimate.model;
-    out->parameters[at].lower = resolved;
-  }
-  return out;
-}
-
-/// The estimate's last effect with its numerical times, which it keeps fixed and of which one number of sampling intervals is looked at,
-/// this much shorter; nullopt: it has none.
-std::optional<Model> with_shorter_times(const FilterEstimate& estimate, double share) {
-  const BoundEffect& effect = estimate.model.effects.back();
-  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
-  std::optional<Model> out;
-  for (std::size_t c = 0; c < coefficients.size(); ++c) {
-    const int at = effect.coefficients[c].parameter;
-    const bool numerical =
-        coefficients[c].fixed && coefficients[c].scan.count == 1 && std::string_view(coefficients[c].scan.over) == "step";
-    if (!numerical || at < 0 || estimate.model.parameters[at].free) continue;
-    if (!out) out = estimate.model;
-    Parameter& time = out->parameters[at];
-    time.value *= share;
-    time.lower = std::min(time.lower, time.value);
-  }
-  return out;
-}
-
-/// The estimate goes on from `next(estimate)`, at `most` times, as long as there is one and the objective rises by more than `least`.
-template <class Next>
-void go_on(const RefitWork& work, Refit& out, int most, double least, const Next& next) {
-  for (int k = 0; k < most && out.estimate.converged; ++k) {
-    const std::optional<Model> start = next(out.estimate);
-    if (!start) return;
-    FilterOptions options = options_like(work.without, work.threads);
-    options.noise = out.estimate.noise;
-    try {
-      FilterEstimate there = estimate_filter(*start, penalties_as_of(work.without, *start), work.experiments, options);
-      if (there.out_of_time || !there.converged || !(there.objective > out.estimate.objective + least)) return;
-      out.estimate = std::move(there);
-    } catch (const TimeLimitReached&) {  // what was found stays
-      return;
-    } catch (const RunError&) {
-      return;
-    }
-  }
-}
-
-}  // namespace
-
-void narrow_smoothings(const RefitWork& work, Refit& out) {
-  constexpr int most = 8;
-  go_on(work, out, most, 0.0, [](const FilterEstimate& estimate) { return with_narrower_bounds(estimate); });
-}
-
-void shorten_numerical_times(const RefitWork& work, Refit& out) {
-  constexpr int most = 2;
-  constexpr double shorter = 0.1;
-  go_on(work, out, most, 0.5 * tied_drops, [](const FilterEstimate& estimate) { return with_shorter_times(estimate, shorter); });
+void note_output_as_late(Refit& out) {
+  const Model& model = out.estimate.model;
+  const SystemSpec& system = model.system->spec();
+  const auto of_last = [&](const LateInputUse& late) { return late.effect + 1 == std::ssize(model.effects); };
+  const std::vector<LateInputUse> late = model.late_inputs();
+  if (!out.also.empty() || system.inputs.size() != 1 || system.outputs.size() != 1 || !std::any_of(late.begin(), late.end(), of_last))
+    return;
+  const auto is_whole = [&](const BoundCoefficient& c) {
+    return c.parameter < 0 || model.parameters[c.parameter].kind == CoefficientKind::shape || !model.parameters[c.parameter].free;
+  };
+  const auto& coefficients = model.effects.back().coefficients;
+  if (!std::all_of(coefficients.begin(), coefficients.end(), is_whole)) return;
+  out.also = system.outputs.front().name + " late by as much, and " + system.inputs.front().name +
+             " not, is the same: with one input and one output a recording cannot tell which of the two it is";
 }
 
 bool free_drifts(const RefitWork& work, Refit& out) {

@@ -7,17 +7,8 @@ namespace misfit {
 // What a refit that has found its maximum tries beside it: narrower corners, the whole effect, the other order of two poles, shapes that
 // drift.
 
-/// A width (ScanSpec::smooths) that ends at what the filter resolved beside what was missing: as the effect explains more, the filter
-/// resolves more, and the search goes on down to that, as long as the log-likelihood rises.
-void narrow_smoothings(const RefitWork& work, Refit& out);
-
-/// A time in which something follows that in truth follows at once (backlash_tau), fixed at two sampling intervals, goes on to a tenth and
-/// a hundredth of that while the log-likelihood rises by more than tied_drops/2: as long as it is, it is a lag beside the effect, which the
-/// search makes up for with a weaker and wider one.
-void shorten_numerical_times(const RefitWork& work, Refit& out);
-
 /// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood falls
-/// by no more than 2, or a hundredth of what the effect explains (a twentieth, where it was found to 2 % of the whole): from where the
+/// by no more than 3.3, or a hundredth of what the effect explains (a tenth, where it was found to 2 % of the whole): from where the
 /// refit has found a part of it, and from the best of its screened shapes, beside the values of the estimate without it or the study's own:
 /// what was found may be a maximum of its own, from which no way leads to the whole. False: there was no time to try, so that a part that
 /// was found says nothing.
@@ -35,5 +26,9 @@ void try_exchanged_poles(const RefitWork& work, Refit& out);
 /// A delay of half a sampling interval, or a clock that is as much behind or ahead: what an input looks like that is held between its
 /// samples where the model has it straight, or the other way round. In words, in Refit::also.
 void note_half_a_sample(Refit& out);
+
+/// A whole delay of the only input of a system with one output: that output late by as much gives the same recording. In words, in
+/// Refit::also, if nothing is there.
+void note_output_as_late(Refit& out);
 
 }  // namespace misfit

@@ -223,6 +223,15 @@ void RefitWaves::refit_beside_an_edge_not_visited() {
     refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_edges"});
 }
 
+void RefitWaves::refit_other_lags_beside_a_lag() {
+  const RankedCandidate* most = with_largest_drop(ranked_, context_.options.p_accept);
+  if (ranks().size() > 1 || most == nullptr || !most->screening->candidate_model->lags) return;
+  const auto begins = [&](const RankedCandidate& e) {
+    return e.screening->candidate_model->lags && may_explain_as(most, e, e.candidate.predicted_drop, 1.0);
+  };
+  refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_lags"});
+}
+
 bool RefitWaves::was_cut_off(const RankedCandidate& e) const {
   return std::find(unfinished_.begin(), unfinished_.end(), effect_at(e.candidate.effect, e.candidate.roles)) != unfinished_.end();
 }

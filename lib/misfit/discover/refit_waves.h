@@ -37,6 +37,9 @@ class RefitWaves {
   /// An effect with two edges one of which nothing visits is refused, and may be one with the other edge alone, whose score promises little
   /// from far below: those at the same port that are significant and not refitted yet.
   void refit_beside_an_edge_not_visited();
+  /// Lags and delays of inputs and sensors are nearly alike at their maxima, wherever they are, but promise little from far below. Where
+  /// one explains most, the others are refitted too, as far as they may explain as much, so that what cannot be told apart is said.
+  void refit_other_lags_beside_a_lag();
   /// Further waves, where nothing is accepted yet. False: there is none, or none gains.
   bool refit_the_other_nominated();
   bool refit_the_other_significant_ones();

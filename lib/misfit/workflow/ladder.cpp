@@ -92,6 +92,17 @@ std::vector<std::vector<SampleRole>> common_use(const FilterEstimate& a, const F
   return use;
 }
 
+/// Of each experiment the steps of the one that needs more: an effect that follows fast is integrated wrongly in those of a model without
+/// it.
+std::vector<IntegrationPlan> finer_plans(const FilterEstimate& a, const FilterEstimate& b) {
+  std::vector<IntegrationPlan> out = plans_of(a);
+  const std::vector<IntegrationPlan> other = plans_of(b);
+  for (std::size_t e = 0; e < out.size(); ++e) {
+    if (other[e].parts.size() > out[e].parts.size()) out[e] = other[e];
+  }
+  return out;
+}
+
 struct Gain {
   double drop = 0.0;
   std::optional<double> held_out;
@@ -113,7 +124,7 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   std::vector<FilterStart> starts = {{child.estimate->model, penalties, child.estimate->noise}};
   const std::vector<FilterStart> off = starts_from(contained_fit(without), child.prepared.model);
   if (!off.empty()) starts.push_back({off.front().model, penalties, off.front().noise});
-  options.plans = plans_of(without);
+  options.plans = finer_plans(without, *child.estimate);
   const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
   if (without.out_of_time || with.out_of_time) throw TimeLimitReached(Watch::current()->words());
   Gain gain{2.0 * (with.objective - without.objective), std::nullopt};

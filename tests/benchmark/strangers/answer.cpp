@@ -51,10 +51,14 @@ std::string place_of(const json& candidate) {
   return text;
 }
 
-/// Log-likelihood of filter_error; nothing where the fit failed.
+/// Log-likelihood of filter_error; nothing where the fit failed, or leaves out measurements as nonlinear: each counts several units, so
+/// that it is no measure for a fit of all of them.
 std::optional<double> loglik(const fs::path& study) {
   const json fit = read(study / "out/fit/filter_error/fit.json");
   if (!fit.is_object() || !fit["loglik"].is_number()) return std::nullopt;
+  for (const json& warning : fit["warnings"]) {
+    if (warning.get<std::string>().find("excluded: the filter's linearisation") != std::string::npos) return std::nullopt;
+  }
   return fit["loglik"].get<double>();
 }
 

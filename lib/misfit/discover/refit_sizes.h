@@ -1,0 +1,16 @@
+#pragma once
+
+#include "misfit/discover/refit.h"
+
+namespace misfit {
+
+/// A width (ScanSpec::smooths) that ends at what the filter resolved beside what was missing: as the effect explains more, the filter
+/// resolves more, and the search goes on down to that, as long as the log-likelihood rises.
+void narrow_smoothings(const RefitWork& work, Refit& out);
+
+/// A time in which something follows that in truth follows at once (backlash_tau), fixed at two sampling intervals, goes on to a tenth and
+/// a hundredth of that while the log-likelihood rises by more than tied_drops/2: as long as it is, it is a lag beside the effect, which the
+/// search makes up for with a weaker and wider one. Each is integrated in steps of its own: those of the search would be too long.
+void shorten_numerical_times(const RefitWork& work, Refit& out);
+
+}  // namespace misfit
