@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "misfit/discover/verdict.h"
 #include "tests/discover/found.h"
 
 namespace misfit {
@@ -129,6 +130,14 @@ TEST(AResistanceThatVaries, IsNoProductOfTemperatureAndCurrent) {
   const Estimate slope = first.parameters.at("slope");
   EXPECT_NEAR(slope.value, 2e-4, 4.0 * slope.sigma);
   EXPECT_LT(slope.sigma, 4e-6);
+}
+
+/// Where it has the model's value is a matter of counting: a state of which the beginning is estimated may have moved away from there.
+TEST(AResistanceThatVaries, MayHaveItsOwnValueWhereNothingWas) {
+  const std::vector<Signals> recording = {fuse(6)};
+  ModelRequest request = request_of("text", {effect("varying_parameter", {{"parameter", "R0"}, {"with", "T"}})});
+  request.parameters["middle"].value = -100.0;
+  EXPECT_FALSE(edge_not_visited(estimate_filter(assemble(request, *registry_with(fuse_text)), {}, recording)));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ class Search {
       waves_->refit_what_the_free_run_shows();
       waves_->refit_what_fell_short();
       waves_->refit_beside_an_edge_not_visited();
-      waves_->refit_other_lags_beside_a_lag();
+      waves_->refit_what_promises_little();
       if (find_higher() || (options_.refits && !ranks().first())) return {};
       unexplained = what_is_accepted();
       if (none_accepted() && waves_->refit_the_other_nominated()) unexplained = what_is_accepted();

@@ -156,7 +156,9 @@ double OperatingRange::narrowest(int quantity) const {
 }
 
 std::optional<OperatingRange::Range> OperatingRange::range_of_edge(const BoundEffect& effect, std::size_t coefficient) const {
-  const ScanSpec& scan = effect.effect->spec().coefficients[coefficient].scan;
+  const CoefficientSpec& c = effect.effect->spec().coefficients[coefficient];
+  if (c.fixed && c.scan.count == 1) return std::nullopt;  // from where something is counted: the effect goes on beyond it
+  const ScanSpec& scan = c.scan;
   return scanned_size(scan).kind == ScannedSize::Kind::range && !scan.is_frequency() ? range(scanned_quantity(effect, scan)) : std::nullopt;
 }
 

@@ -183,11 +183,16 @@ bool RefitWaves::refit_nominated(const std::vector<const ScreeningResult*>& nomi
 /// What the free run alone nominated must explain there what it promised: else its refit went elsewhere, and is not counted.
 void RefitWaves::require_of_free_run(RankedCandidate& e) {
   const std::optional<FilterEstimate> after = free_run(e.refit->estimate, {context_.experiments, context_.options.threads});
-  if (!after || is_explained(*calm_, *after)) return;  // none: nothing is left to the random force
+  if (after && !is_explained(*calm_, *after))
+    forget_refit(e, "its refit does not explain the free run");  // none: nothing is left to the random force
+}
+
+/// As it was screened.
+void RefitWaves::forget_refit(RankedCandidate& e, const char* why) const {
   e.refit.reset();
   e.log_p = e.screening->log_p;
   e.candidate = named_candidate(*e.screening, context_.families);
-  e.candidate.why = "not significant: family-wise " + p_equals(e.candidate.p_value) + "; its refit does not explain the free run";
+  e.candidate.why = "not significant: family-wise " + p_equals(e.candidate.p_value) + "; " + why;
 }
 
 bool RefitWaves::significant_in_screening(const RankedCandidate& e) const {
@@ -223,13 +228,31 @@ void RefitWaves::refit_beside_an_edge_not_visited() {
     refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_edges"});
 }
 
-void RefitWaves::refit_other_lags_beside_a_lag() {
-  const RankedCandidate* most = with_largest_drop(ranked_, context_.options.p_accept);
-  if (ranks().size() > 1 || most == nullptr || !most->screening->candidate_model->lags) return;
+void RefitWaves::refit_what_promises_little() {
+  constexpr double most_more = 10.0;
+  const double p_accept = context_.options.p_accept;
+  const RankedCandidate* most = with_largest_drop(ranked_, p_accept);
+  if (ranks().size() > 1 || most == nullptr) return;
+  const bool lags = most->screening->candidate_model->lags;
+  const double least = most->refit->drop - (lags ? 2.0 : 1.0) * tied_drops;
+  std::vector<const ScreeningResult*> begun;
   const auto begins = [&](const RankedCandidate& e) {
-    return e.screening->candidate_model->lags && may_explain_as(most, e, e.candidate.predicted_drop, 1.0);
+    const bool both_lag = lags && e.screening->candidate_model->lags;
+    return (both_lag || (may_be_significant(e, p_accept) && is_far_from_linear(e))) &&
+           may_explain_as(most, e, e.candidate.predicted_drop, most_more);
   };
-  refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_lags"});
+  refit_wave({.begin =
+                  [&](const RankedCandidate& e) {
+                    if (!begins(e)) return static_cast<const ScreeningResult*>(nullptr);
+                    if (!significant(e)) begun.push_back(e.screening);
+                    return e.screening;
+                  },
+              .name = "_little"});
+  for (RankedCandidate& e : ranked_) {
+    if (e.refit && e.refit->drop < least && std::find(begun.begin(), begun.end(), e.screening) != begun.end())
+      forget_refit(e, "its refit explains less than a significant one");
+  }
+  sort_by_evidence(ranked_);
 }
 
 bool RefitWaves::was_cut_off(const RankedCandidate& e) const {

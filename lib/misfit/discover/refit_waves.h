@@ -37,9 +37,10 @@ class RefitWaves {
   /// An effect with two edges one of which nothing visits is refused, and may be one with the other edge alone, whose score promises little
   /// from far below: those at the same port that are significant and not refitted yet.
   void refit_beside_an_edge_not_visited();
-  /// Lags and delays of inputs and sensors are nearly alike at their maxima, wherever they are, but promise little from far below. Where
-  /// one explains most, the others are refitted too, as far as they may explain as much, so that what cannot be told apart is said.
-  void refit_other_lags_beside_a_lag();
+  /// Beside a significant effect, those of which one step told so little that they are not: lags and delays beside one of these, which are
+  /// nearly alike at their maxima, and what is far from linear and nearly significant. Forgotten again where they explain less than the
+  /// significant one.
+  void refit_what_promises_little();
   /// Further waves, where nothing is accepted yet. False: there is none, or none gains.
   bool refit_the_other_nominated();
   bool refit_the_other_significant_ones();
@@ -75,6 +76,7 @@ class RefitWaves {
   [[nodiscard]] bool was_cut_off(const RankedCandidate& e) const;
   bool refit_nominated(const std::vector<const ScreeningResult*>& nominated, const char* name);
   void require_of_free_run(RankedCandidate& e);
+  void forget_refit(RankedCandidate& e, const char* why) const;
   bool refit_again(const Again& again);
   bool refit_wave(const Wave& wave);
   [[nodiscard]] std::optional<FilterEstimate> fitted_to(const std::vector<Signals>& experiments) const;
