@@ -148,10 +148,10 @@ TEST(NoLongerDetermined, IsNotATimeConstantThatWasTakenForTheLagAndIsNowKnownAsW
   FilterEstimate with = without;
   with.model.parameters[1].value *= 50.0;
   const double moved = with.model.parameters[1].value;
-  const auto know_to = [&](double share) { with.covariance(1, 1) = std::pow(share * moved / with.model.parameters[1].scale, 2); };
-  know_to(0.02);
-  EXPECT_FALSE(no_longer_determined(with, without)) << "its sigma is as large as the value before, but 2 % of the one now";
-  know_to(0.2);
+  const auto know_to = [&](double share) { with.covariance(1, 1) = std::pow(share * moved, 2); };
+  know_to(0.1);
+  EXPECT_FALSE(no_longer_determined(with, without)) << "its sigma is larger than the value before, but a tenth of the one now";
+  know_to(0.3);
   EXPECT_TRUE(no_longer_determined(with, without));
 }
 

@@ -99,6 +99,16 @@ bool are_tied(const RankedCandidate& a, const RankedCandidate& b) {
   return std::abs(a.refit->drop - b.refit->drop) <= (both_lag ? 2.0 : 1.0) * tied_drops;
 }
 
+/// Two names of one thing, as E1(I) and R0(soc) in E1 soc - R0 I: beside what is free in the model their columns span the same, so that
+/// they score the same to all digits but those of rounding. A refit of one may end lower all the same.
+bool score_the_same(const RankedCandidate& a, const RankedCandidate& b) {
+  constexpr double rounding = 1e-6;
+  const auto is_linear = [](const RankedCandidate& e) { return e.screening->runs && !e.candidate.absorbed && !is_far_from_linear(e); };
+  if (!is_linear(a) || !is_linear(b) || a.candidate.dof != b.candidate.dof) return false;
+  const double chi2 = a.screening->result.chi2;
+  return chi2 > 0.0 && std::abs(b.screening->result.chi2 - chi2) < rounding * chi2;
+}
+
 /// Step 8: groups the best candidate with those that these data cannot distinguish from it. Not with one that has an edge which nothing
 /// visits: with the other edge alone it is a candidate of its own.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
@@ -109,6 +119,10 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
   const double p_accept = context.options.p_accept;
   for (std::size_t k = 1; k < ranked.size(); ++k) {
     RankedCandidate& other = ranked[k];
+    if (score_the_same(other, best)) {
+      members.push_back(&other);
+      continue;
+    }
     if (!other.refit || !are_tied(other, best) || edge_not_visited(other.refit->estimate)) continue;
     if (!adds_nothing(given_best, other, p_accept) || !adds_nothing(ConditionalScores(*other.refit, context), best, p_accept)) continue;
     members.push_back(&other);

@@ -235,21 +235,17 @@ void RefitWaves::refit_what_promises_little() {
   if (ranks().size() > 1 || most == nullptr) return;
   const bool lags = most->screening->candidate_model->lags;
   const double least = most->refit->drop - (lags ? 2.0 : 1.0) * tied_drops;
-  std::vector<const ScreeningResult*> begun;
-  const auto begins = [&](const RankedCandidate& e) {
+  std::vector<const ScreeningResult*> insignificant;
+  const auto begin = [&](const RankedCandidate& e) -> const ScreeningResult* {
     const bool both_lag = lags && e.screening->candidate_model->lags;
-    return (both_lag || (may_be_significant(e, p_accept) && is_far_from_linear(e))) &&
-           may_explain_as(most, e, e.candidate.predicted_drop, most_more);
+    const bool nearly = may_be_significant(e, p_accept) && is_far_from_linear(e);
+    if (!(both_lag || nearly) || !may_explain_as(most, e, e.candidate.predicted_drop, most_more)) return nullptr;
+    if (!significant(e)) insignificant.push_back(e.screening);
+    return e.screening;
   };
-  refit_wave({.begin =
-                  [&](const RankedCandidate& e) {
-                    if (!begins(e)) return static_cast<const ScreeningResult*>(nullptr);
-                    if (!significant(e)) begun.push_back(e.screening);
-                    return e.screening;
-                  },
-              .name = "_little"});
+  refit_wave({.begin = begin, .name = "_little"});
   for (RankedCandidate& e : ranked_) {
-    if (e.refit && e.refit->drop < least && std::find(begun.begin(), begun.end(), e.screening) != begun.end())
+    if (e.refit && e.refit->drop < least && std::find(insignificant.begin(), insignificant.end(), e.screening) != insignificant.end())
       forget_refit(e, "its refit explains less than a significant one");
   }
   sort_by_evidence(ranked_);

@@ -334,14 +334,14 @@ void add_camera_remarks(const Calibration* calibration, double p_accept, Discove
 }
 
 std::optional<std::string> no_longer_determined(const FilterEstimate& with, const FilterEstimate& without) {
-  constexpr double known = 0.05;   // of a value, where it is determined
-  constexpr double unknown = 0.5;  // of the value without the effect
+  constexpr double known = 0.05, unknown = 0.5;  // of the value without the effect
+  constexpr double known_anew = 0.2;             // of the value with it
   for (const int i : without.model.free_parameters()) {
     const Parameter& before = without.model.parameters[i];
     const Parameter& after = with.model.parameters[i];
     const auto sigma = standard_error_of(without.model, without.covariance, i), wider = standard_error_of(with.model, with.covariance, i);
     if (before.curve >= 0 || !sigma || !wider) continue;
-    const bool was_known = *sigma < known * std::abs(before.value), is_known = *wider < known * std::abs(after.value);
+    const bool was_known = *sigma < known * std::abs(before.value), is_known = *wider < known_anew * std::abs(after.value);
     if (!was_known || is_known || !(*wider > unknown * std::abs(before.value))) continue;
     return "with it in the model " + after.name + " is no longer determined: " + in_display_unit(after.value, after.unit, *wider) +
            ", without it " + in_display_unit(before.value, before.unit, *sigma) + ": these data cannot tell the two apart";

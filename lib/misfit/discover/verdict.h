@@ -30,9 +30,9 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 [[nodiscard]] std::optional<std::string> ends_at_bound(const Model& model, const std::vector<int>& strengths);
 
 /// "with it in the model gain is no longer determined: 594 ± 268 V, without it 20.00 ± 0.06 V: …" for the first parameter whose sigma is
-/// below 5 % of its value without the effect and, with it, above 50 % of that value and 5 % of the new one: the effect does what that
-/// parameter does. One that had taken what the effect does may move far and be known as well. nullopt: none
-/// is. `with` has the parameters of `without` first.
+/// below 5 % of its value without the effect and, with it, above 50 % of that value and 20 % of the new one: the effect does what that
+/// parameter does. One that had taken what the effect does may move far and be known as well. nullopt: none is. `with` has the parameters
+/// of `without` first.
 [[nodiscard]] std::optional<std::string> no_longer_determined(const FilterEstimate& with, const FilterEstimate& without);
 
 /// "its strength is not determined: lag_stiffness = 140 ± 920 N m/rad" where every one of these parameters is smaller than two sigmas: a
