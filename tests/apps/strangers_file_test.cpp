@@ -105,4 +105,20 @@ TEST(StrangersFile, OfAHouseWithHeavyWallsItNamesWhatTheyStore) {
   EXPECT_THAT(v.sentence, testing::StartsWith("lag was missing"));
 }
 
+/// Every measurement is a multiple of 0.0586 K, by which the filter takes more for noise than anything else; what is held out it predicts
+/// worse with the rounding, of which it is too sure. Simulated by the bench of strangers (thermal_house, seed 460).
+TEST(StrangersFile, OfAHouseWithACoarseThermometerItNamesTheSteps) {
+  const TemporaryFolder folder;
+  folder.write("house.csv", content(paths::source() / "tests/apps/records/house_with_coarse_thermometer.csv"));
+  const std::string study = (folder.path() / "house").string();
+  ASSERT_EQ(run({"init", (folder.path() / "house.csv").string(), "--out", study}).status, 0);
+  const Outcome outcome = run({"discover", study, "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json first = json::parse(content(folder.path() / "house/out/candidates.json")).at(0);
+  EXPECT_EQ(first.at("effect"), "sensor_quantisation");
+  EXPECT_TRUE(first.at("accepted").get<bool>()) << outcome.out;
+  EXPECT_THAT(first.at("why").get<std::string>(), HasSubstr("seen in the measurements themselves"));
+  EXPECT_NEAR(first.at("parameters").at("step").at("value").get<double>(), 0.058641, 1e-6);
+}
+
 }  // namespace

@@ -50,12 +50,24 @@ std::string not_significant(const RankedCandidate& e, const SearchContext& conte
          format_value(promised) + ", which is no evidence against it";
 }
 
+/// Whole steps of the measurements, where they are most of what is not predicted: they are seen in the measurements themselves, so that
+/// neither a search that a sawtooth stops nor what is held out, where a filter that takes its output for known to a hundredth of a step is
+/// far too sure, speaks against them.
+bool is_seen_in_measurements(const RankedCandidate& e, const SearchContext& context) {
+  const Model& refitted = e.refit->estimate.model;
+  return e.refit->partial.empty() && on_whole_steps(refitted, context.experiments) && are_coarse_steps(refitted, context.estimate);
+}
+
 /// The reason why it cannot be accepted; empty if there is none. Notes in `e` whether its refit is degenerate, its held-out gain (which may
 /// take two fits), and whether that alone speaks against it.
 std::string reason_against(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
   Candidate& c = e.candidate;
   e.alone_gains_nothing = false;
   if (!(c.p_value < context.options.p_accept)) return not_significant(e, context);
+  if (is_seen_in_measurements(e, context)) {
+    if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
+    return "";
+  }
   if (!near_a_maximum(*e.refit)) return "its refit has not converged: " + e.refit->estimate.message;
   const Model& refitted = e.refit->estimate.model;
   const auto memory = outlasts_recording(refitted, refitted.effects.back(), longest_recording(context.experiments));
@@ -319,11 +331,12 @@ Choice first_with_a_second_effect(std::vector<RankedCandidate>& ranked, const st
 }
 
 /// Marks the choice as accepted, says why, and makes it the first of the list.
-void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice) {
+void move_to_front(std::vector<RankedCandidate>& ranked, const Choice& choice, const SearchContext& context) {
   Candidate& c = choice.at->candidate;
   c.accepted = true;
   c.remaining.reset();  // the second one explains it
   c.why = "family-wise " + p_equals(c.p_value) + ", held-out gain " + format_value(*c.held_out_gain);
+  if (is_seen_in_measurements(*choice.at, context)) c.why += "; it is seen in the measurements themselves, whatever the fit makes of it";
   const FilterEstimate& there = choice.at->refit->estimate;
   if (!there.converged) c.why += "; " + there.message;
   if (const std::string drifts = drifts_in_words(there.model, there.covariance); !drifts.empty()) c.why += "; " + drifts;
@@ -388,7 +401,7 @@ std::optional<Unexplained> accept_best(std::vector<RankedCandidate>& ranked, con
                                      : first_with_a_second_effect(ranked, imitations, held_out, context);
   if (choice.at != ranked.end()) choice = or_a_better_pair(ranked, choice, held_out, context);
   const bool accepted = choice.at != ranked.end();
-  if (accepted) move_to_front(ranked, choice);
+  if (accepted) move_to_front(ranked, choice, context);
   find_groups(ranked, context);
   if (accepted) explain_others(ranked);
   if (accepted) return std::nullopt;

@@ -303,6 +303,22 @@ std::optional<std::string> on_whole_steps(const Model& model, const std::vector<
          in_display_unit(step / std::sqrt(12.0), p.unit) + " to a filter";
 }
 
+bool are_coarse_steps(const Model& model, const FilterEstimate& without) {
+  constexpr double most_of = 0.5;
+  const int parameter = step_of_measurements(model.effects.back());
+  if (parameter < 0) return false;
+  const std::size_t output = model.effects.back().ports.front(), outputs = without.model.outputs();
+  double sum = 0.0, count = 0.0;
+  for (std::size_t e = 0; e < without.data.size(); ++e) {
+    for (std::size_t at = output; at < without.data[e].use.size(); at += outputs) {
+      if (without.data[e].use[at] != SampleRole::counted) continue;
+      sum += without.traces[e].e[at] * without.traces[e].e[at];
+      count += 1.0;
+    }
+  }
+  return std::abs(model.parameters[parameter].value) / std::sqrt(12.0) > most_of * std::sqrt(sum / std::max(count, 1.0));
+}
+
 void add_camera_remarks(const Calibration* calibration, double p_accept, Discovery& out) {
   if (calibration == nullptr) return;
   std::vector<std::string> wanted;
