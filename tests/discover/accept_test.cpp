@@ -243,15 +243,39 @@ TEST(Accept, WholeStepsOfAnOutputAreFound) {
   EXPECT_NEAR(ranked[0].refit->parameters.at("rounded").value, 1.0, 0.1) << "of three harmonics of the sawtooth";
 }
 
-TEST(Accept, WholeStepsThatPredictNoBetterAreSaidAllTheSame) {
+TEST(Accept, WholeStepsThatAreMostOfWhatIsNotPredictedAreFoundWhateverIsHeldOut) {
   const World world = with_whole_steps(0.05);
   std::vector<RankedCandidate> ranked = {world.entry("sensor_quantisation")};
   ranked[0].candidate.held_out_gain = -3.0;
   world.accept(ranked);
+  EXPECT_TRUE(ranked[0].candidate.accepted);
+  EXPECT_THAT(ranked[0].candidate.why, testing::HasSubstr("held-out gain -3; it is seen in the measurements themselves"));
+}
+
+TEST(Accept, WholeStepsOfWhichAPartIsFoundAreSaidAllTheSame) {
+  const World world = with_whole_steps(0.05);
+  std::vector<RankedCandidate> ranked = {world.entry("sensor_quantisation")};
+  ranked[0].refit->partial = "rounded = 0.5";
+  world.accept(ranked);
   EXPECT_FALSE(ranked[0].candidate.accepted);
-  EXPECT_THAT(
-      ranked[0].candidate.why,
-      testing::HasSubstr("does not rise (-3); the measurements are in whole steps of 0.05 all the same, noise of 0.014434 to a filter"));
+  EXPECT_THAT(ranked[0].candidate.why,
+              testing::HasSubstr("rounded = 0.5; the measurements are in whole steps of 0.05 all the same, noise of "
+                                 "0.014434 to a filter"));
+}
+
+TEST(WholeSteps, AreCoarseWhereTheyAreMostOfWhatIsNotPredicted) {
+  const World world = with_whole_steps(0.05);
+  Model model = world.entry("sensor_quantisation", false).screening->candidate_model->model;
+  const auto set = [&](double step) {
+    const BoundEffect& effect = model.effects.back();
+    for (const BoundCoefficient& c : effect.coefficients) {
+      if (c.parameter >= 0 && model.parameters[c.parameter].name == "step") model.parameters[c.parameter].value = step;
+    }
+  };
+  set(0.05);
+  EXPECT_TRUE(are_coarse_steps(model, world.estimate));
+  set(0.005);
+  EXPECT_FALSE(are_coarse_steps(model, world.estimate));
 }
 
 /// Hysteresis catches a little of the friction and would be accepted by itself; the order is as if it had caught the most.
