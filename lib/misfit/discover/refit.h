@@ -88,7 +88,7 @@ struct OneStep {
 /// Where no maximum is reached from there, and without it: from the estimate with the effect added to it, which an effect that the other
 /// parameters must make room for can throw out of the finite numbers; where that, too, reaches none, or one below the estimate: from the
 /// estimate with the effect in it but off, below which the search does not end. A width that ends at what the filter resolved goes on down
-/// to what it resolves now (refit_forms.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if that
+/// to what it resolves now (refit_sizes.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if that
 /// costs the log-likelihood little (fix_whole_strengths()): from what was found and from the best of the shapes that the screening looked
 /// at, the higher of the two. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a
 /// shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
