@@ -98,7 +98,7 @@ std::string reason_against(RankedCandidate& e, HeldOut& held_out, const SearchCo
 
 /// Step 4. That measurements are in whole steps is seen in them, whatever the fit makes of the rounding: it is said beside the reason.
 std::string judge(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
-  const std::string why = reason_against(e, held_out, context);
+  std::string why = reason_against(e, held_out, context);
   if (why.empty() || !(e.candidate.p_value < context.options.p_accept)) return why;
   const auto steps = on_whole_steps(e.refit->estimate.model, context.experiments);
   return steps ? why + "; " + *steps : why;
