@@ -4,7 +4,7 @@
 
 namespace misfit {
 
-// What a refit that has found its maximum tries beside it: narrower corners, the whole effect, the other order of two poles, shapes that
+// What a refit that has found its maximum tries beside it: the whole effect, the other order of two poles, shapes that
 // drift.
 
 /// Holds the strengths of an effect that exists as a whole only (CoefficientSpec::whole) at that value, if the log-likelihood falls

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,8 +41,7 @@ std::optional<Model> with_shorter_times(const FilterEstimate& estimate, double s
   std::optional<Model> out;
   for (std::size_t c = 0; c < coefficients.size(); ++c) {
     const int at = effect.coefficients[c].parameter;
-    const bool numerical =
-        coefficients[c].fixed && coefficients[c].scan.count == 1 && std::string_view(coefficients[c].scan.over) == "step";
+    const bool numerical = is_hardly_seen_between_samples(coefficients[c]) && coefficients[c].scan.count == 1;
     if (!numerical || at < 0 || estimate.model.parameters[at].free) continue;
     if (!out) out = estimate.model;
     Parameter& time = out->parameters[at];
