@@ -10,13 +10,16 @@ using namespace misfit;
 /// An output in whole steps of a converter or an encoder: what rounding to the next of them adds, its first three harmonics, since a jump
 /// has no derivative. Step and level are usually known or seen at once (the smallest difference of two measurements, and any of them) and
 /// are held; where the output's own noise is above a third of a step, rounding is only a little more noise (step/sqrt(12)).
+/// With `rounded` held at 1, filter_error predicts no rounding: it takes each measurement for the interval of a step that it stands for
+/// (lib/misfit/README.md, 5.6), and this formula is for simulation and output error alone.
 struct SensorQuantisation {
   static constexpr const char* formula = "y = h + rounded step/pi sum_{k=1..3} (-1)^k/k sin(2 pi k (h - level)/step)";
   static constexpr const char* symbols =
       "h predicted output [output], rounded share [-] (1: whole steps are read), step [output], "
       "level a value that is read [output]";
   static constexpr const char* valid =
-      "outputs that cross steps slowly; within 0.1 step of the rounded one up to 0.4 step from its middle, smooth where that jumps";
+      "outputs that cross steps slowly; within 0.1 step of the rounded one up to 0.4 step from its middle, smooth where that jumps; "
+      "with rounded held at 1, filter_error takes each measurement for an interval of one step, which holds at any speed";
   static constexpr const char* size = "at most half a step, on average step/sqrt(12): 2.9 mV for steps of 10 mV";
   static constexpr const char* source =
       "B. Widrow, I. Kollar, Quantization Noise (2008), ch. 2: the rounding error as a sawtooth; its Fourier series";

@@ -57,9 +57,8 @@ TEST(RunLinear, AtTheSameNoiseRepeatsTheRun) {
   const Cart cart(200);
   const FilterTrace trace = cart.run();
   const Innovations innovations = run_linear(cart.model, cart.data, trace, cart.noise);
-  const auto& [e, S] = innovations;
   EXPECT_NEAR(-minus_loglik(cart.data, innovations), trace.loglik, 1e-8 * std::abs(trace.loglik));
-  for (std::size_t i = 0; i < e.size(); ++i) EXPECT_NEAR(e[i], trace.e[i], 1e-10) << i;
+  for (std::size_t i = 0; i < trace.e.size(); ++i) EXPECT_NEAR(innovations.e[i], trace.e[i], 1e-10) << i;
 }
 
 /// On a linear system the run about a trace is the run itself, but for how the correlation time enters the step: first order there.

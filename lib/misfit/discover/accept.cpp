@@ -16,6 +16,7 @@
 #include "misfit/inference/beyond_record.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/memory.h"
+#include "misfit/model/whole_steps.h"
 
 namespace misfit {
 namespace {
@@ -121,8 +122,14 @@ bool score_the_same(const RankedCandidate& a, const RankedCandidate& b) {
   return chi2 > 0.0 && std::abs(b.screening->result.chi2 - chi2) < rounding * chi2;
 }
 
+bool is_read_in_steps(const RankedCandidate& e) {
+  const Model& refitted = e.refit->estimate.model;
+  return reads_whole_steps(refitted, refitted.effects.back());
+}
+
 /// Step 8: groups the best candidate with those that these data cannot distinguish from it. Not with one that has an edge which nothing
-/// visits: with the other edge alone it is a candidate of its own.
+/// visits: with the other edge alone it is a candidate of its own. Nor with whole steps, which the measurements show themselves, and of
+/// which the score of a sawtooth says nothing beside another effect.
 void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& context) {
   if (ranked.empty() || !ranked.front().refit) return;
   RankedCandidate& best = ranked.front();
@@ -136,6 +143,7 @@ void find_groups(std::vector<RankedCandidate>& ranked, const SearchContext& cont
       continue;
     }
     if (!other.refit || !are_tied(other, best) || edge_not_visited(other.refit->estimate)) continue;
+    if (is_read_in_steps(best) || is_read_in_steps(other)) continue;
     if (!adds_nothing(given_best, other, p_accept) || !adds_nothing(ConditionalScores(*other.refit, context), best, p_accept)) continue;
     members.push_back(&other);
   }

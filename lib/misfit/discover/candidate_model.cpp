@@ -201,7 +201,7 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
         if (!runner.run(data[e], estimate.noise, sides[side])) return {};
       }
       for (std::size_t at : estimate.jacobians[e].index)
-        out(row++, c) = (sides[0].e[at] - sides[1].e[at]) / (2.0 * h * std::sqrt(estimate.traces[e].S[at]));
+        out(row++, c) = (sides[0].departure(at) - sides[1].departure(at)) / (2.0 * h * std::sqrt(estimate.traces[e].S[at]));
     }
     values[parameter] = 0.0;
   }

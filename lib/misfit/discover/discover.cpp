@@ -41,6 +41,7 @@ class Search {
       leave_out(twins(), candidates_.models);
       screen_all();
       waves_->refit_where_signs_are_lost();
+      waves_->refit_where_steps_are_coarse();
       waves_->refit_the_best();
       if (find_higher()) return {};
       waves_->refit_the_significant_beyond_a_step();

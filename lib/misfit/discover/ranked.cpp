@@ -6,6 +6,7 @@
 #include "misfit/discover/added_force.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/whole_steps.h"
 
 namespace misfit {
 
@@ -23,7 +24,9 @@ void describe_refit(RankedCandidate& e, double families) {
   c.actual_drop = refit.drop;
   c.held_out_gain.reset();  // that of an earlier refit
   e.log_p = log_drop_tail(*e.screening->candidate_model, refit.drop) + std::log(e.screening->cells_effective);
-  c.p_value = family_wise_p(e.log_p, families);
+  // Whole steps are seen in the measurements: they are not the best of many effects that were tried.
+  const Model& refitted = refit.estimate.model;
+  c.p_value = family_wise_p(e.log_p, reads_whole_steps(refitted, refitted.effects.back()) ? 1.0 : families);
   c.parameters = refit.parameters;
   c.roles = refit.moved.value_or(e.screening->candidate_model->roles);
   c.also = refit.also.empty() ? std::nullopt : std::optional(refit.also);

@@ -12,8 +12,10 @@
 #include "misfit/discover/refit_forms.h"
 #include "misfit/discover/refit_sizes.h"
 #include "misfit/discover/unknown_curves.h"
+#include "misfit/discover/verdict.h"
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/inference/standard_error.h"
+#include "misfit/model/whole_steps.h"
 
 namespace misfit {
 namespace {
@@ -97,6 +99,18 @@ void note_changes(const ScreeningResult& screening, const Registry& registry, Re
 double drop_of(const FilterEstimate& with, const FilterEstimate& without, const ScreeningResult& screening) {
   return 2.0 *
          (with.objective + still_to_gain(with) - without.objective - still_to_gain(without) - prior_of_off(*screening.candidate_model));
+}
+
+/// With an effect of whole steps, and measurements that are in them: held as a whole from the beginning, since no part of it is a way
+/// there. nullopt: it is another effect, or they are not.
+std::optional<Model> model_in_whole_steps(const RefitWork& work, const ScreeningResult& screening) {
+  Model model = start_model(work.without, screening, work.registry);
+  if (!on_whole_steps(model, work.experiments)) return std::nullopt;
+  for (int strength : screening.candidate_model->strengths) {
+    model.parameters[strength].value = 1.0;
+    model.parameters[strength].free = false;
+  }
+  return reads_whole_steps(model, model.effects.back()) ? std::optional(std::move(model)) : std::nullopt;
 }
 
 }  // namespace
@@ -278,7 +292,9 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
     estimate_from_all({{start, penalties_as_of(without, start)}}, noise);
   };
   const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
-  if (work.afresh) {
+  if (const auto in_steps = model_in_whole_steps(work, screening)) {
+    estimate_from(*in_steps, work.afresh ? std::nullopt : std::optional(without.noise));
+  } else if (work.afresh) {
     estimate_from(fresh_model(work, screening), std::nullopt);
   } else {
     if (work.rest != nullptr) {

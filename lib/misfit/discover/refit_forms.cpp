@@ -20,6 +20,7 @@
 #include "misfit/math/statistics.h"
 #include "misfit/model/does_not_suit.h"
 #include "misfit/model/memory.h"
+#include "misfit/model/whole_steps.h"
 
 namespace misfit {
 namespace {
@@ -43,15 +44,6 @@ Model start_of_whole(const Model& part, const std::vector<WholeStrength>& whole)
   return start;
 }
 
-/// What the effect leaves in steps may have had noise before: of a sawtooth of the prediction that leaves the mean over that noise, a part
-/// (its first harmonic is exp(-2 pi^2 sigma^2/step^2) as large). The steps themselves are looked for in the measurements
-/// (off_whole_steps()).
-bool rounds(const BoundEffect& effect) {
-  const auto& coefficients = effect.effect->spec().coefficients;
-  return std::any_of(coefficients.begin(), coefficients.end(),
-                     [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
-}
-
 /// With two free shapes an effect follows much that it is not, so long as it may be a part of itself.
 bool is_flexible(const FilterEstimate& estimate) {
   const BoundEffect& effect = estimate.model.effects.back();
@@ -66,7 +58,9 @@ bool is_flexible(const FilterEstimate& estimate) {
 /// fits worse as a whole is none.
 std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
   constexpr double more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
-  const double less = rounds(estimate.model.effects.back()) ? 0.9 : 0.3;
+  // What is left in steps may have had noise before: of a sawtooth of the prediction that leaves the mean over that noise, a part (its
+  // first harmonic is exp(-2 pi^2 sigma^2/step^2) as large). The steps themselves are looked for in the measurements (off_whole_steps()).
+  const double less = step_of_measurements(estimate.model.effects.back()) >= 0 ? 0.9 : 0.3;
   for (const WholeStrength& w : whole) {
     const Parameter& p = estimate.model.parameters[w.parameter];
     const double sigma = standard_error_of(estimate.model, estimate.covariance, w.parameter).value_or(0.0);
@@ -226,7 +220,7 @@ bool alike(double a, double b) {
 
 bool fix_whole_strengths(const RefitWork& work, const ScreeningResult& screening, Refit& out) {
   const std::vector<WholeStrength> whole = whole_strengths(out.estimate);
-  if (whole.empty()) return true;
+  if (whole.empty() || reads_whole_steps(out.estimate.model, out.estimate.model.effects.back())) return true;
   const ModelRequest as_requested = out.request;
   const double allowed = allowed_of_whole(work, out.estimate, whole);
   WholeSearch search(work, out);

@@ -16,6 +16,7 @@
 #include "misfit/fit/regression/lost_sign.h"
 #include "misfit/jobs/ranks.h"
 #include "misfit/math/statistics.h"
+#include "misfit/model/whole_steps.h"
 
 namespace misfit {
 
@@ -107,6 +108,16 @@ void RefitWaves::refit_where_signs_are_lost() {
     narrow_corners(whole, *rest);
     refit_wave({.begin = [&](const RankedCandidate& e) { return e.screening == s ? &whole : nullptr; }, .name = "_signs", .rest = &*rest});
   }
+}
+
+void RefitWaves::refit_where_steps_are_coarse() {
+  const auto begins = [&](const RankedCandidate& e) {
+    const CandidateModel& candidate_model = *e.screening->candidate_model;
+    if (step_of_measurements(candidate_model.model.effects.back()) < 0) return false;
+    const Model model = start_model(context_.estimate, *e.screening, context_.registry);
+    return on_whole_steps(model, context_.experiments) && are_coarse_steps(model, context_.estimate);
+  };
+  refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_steps"});
 }
 
 /// The model without any effect fitted to other measurements, to which the estimate points; nullopt: it cannot be.

@@ -14,6 +14,7 @@
 #include "misfit/inference/states.h"
 #include "misfit/model/evaluator.h"
 #include "misfit/model/memory.h"
+#include "misfit/model/whole_steps.h"
 
 namespace misfit {
 namespace {
@@ -147,15 +148,6 @@ void say_none_missing(double p_accept, Discovery& out) {
 }
 
 constexpr double share_of_step = 0.05;  ///< that measurements in whole steps may be off by (RMS)
-
-/// The parameter by which all measurements of the effect's output ought to be apart; -1: none.
-int step_of_measurements(const BoundEffect& effect) {
-  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
-  const auto step = std::find_if(coefficients.begin(), coefficients.end(),
-                                 [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
-  if (step == coefficients.end() || effect.kind != PortKind::sensor) return -1;
-  return effect.coefficients[step - coefficients.begin()].parameter;
-}
 
 }  // namespace
 
@@ -312,7 +304,7 @@ bool are_coarse_steps(const Model& model, const FilterEstimate& without) {
   for (std::size_t e = 0; e < without.data.size(); ++e) {
     for (std::size_t at = output; at < without.data[e].use.size(); at += outputs) {
       if (without.data[e].use[at] != SampleRole::counted) continue;
-      sum += without.traces[e].e[at] * without.traces[e].e[at];
+      sum += std::pow(without.traces[e].departure(at), 2);
       count += 1.0;
     }
   }

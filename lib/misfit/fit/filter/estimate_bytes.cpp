@@ -1,5 +1,7 @@
 #include "misfit/fit/filter/estimate_bytes.h"
 
+#include <type_traits>
+
 #include "misfit/core/lists.h"
 
 namespace misfit {
@@ -63,18 +65,32 @@ void fields(Bytes& bytes, MaybeConst<InputTable> auto& data) {
 /// All but the measurements and what is read from them.
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterData> auto& data) {
-  auto& [signals, inputs, use, first, start, covariance, read] = data;
+  auto& [signals, inputs, use, first, start, covariance, steps, read] = data;
   static_cast<void>(signals);
+  static_cast<void>(steps);
   static_cast<void>(read);
   bytes(inputs, use, first, start, covariance);
 }
 
 template <class Bytes>
-void fields(Bytes& bytes, MaybeConst<FilterTrace> auto& data) {
-  auto& [n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, e, S, y, y_variance, P, loglik, validation_loglik,
-         counted, validated] = data;
-  bytes(n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, e, S, y, y_variance, P, loglik, validation_loglik,
-        counted, validated);
+void fields(Bytes& bytes, MaybeConst<LinearisedRun> auto& data) {
+  auto& [n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik, counted,
+         validated] = data;
+  bytes(n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik, counted,
+        validated);
+}
+
+template <class Bytes>
+void fields(Bytes& bytes, MaybeConst<Innovations> auto& data) {
+  auto& [e, S, departures, variances, minus_log] = data;
+  bytes(e, S, departures, variances, minus_log);
+}
+
+template <class Bytes, MaybeConst<FilterTrace> Trace>
+void fields(Bytes& bytes, Trace& data) {
+  using Run = std::conditional_t<std::is_const_v<Trace>, const LinearisedRun, LinearisedRun>;
+  using Read = std::conditional_t<std::is_const_v<Trace>, const Innovations, Innovations>;
+  bytes(static_cast<Run&>(data), static_cast<Read&>(data));
 }
 
 template <class Bytes>
@@ -121,6 +137,7 @@ FilterEstimate read_estimate(ByteReader& bytes, const Model& model, const std::v
   if (out.data.size() != experiments.size()) throw RunError("a stored estimate is of other experiments");
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     out.data[e].signals = &experiments[e];
+    out.data[e].steps = out.forced.steps;
     out.data[e].read = std::make_shared<const ReconstructedStates>(reconstruct_states(model, experiments[e]));
   }
   return out;

@@ -4,7 +4,6 @@
 #include "misfit/fit/filter/filter_run.h"
 #include "misfit/fit/filter/filter_sizes.h"
 #include "misfit/fit/filter/filter_steps.h"
-#include "misfit/fit/filter/normal_density.h"
 
 namespace misfit {
 namespace {
@@ -13,8 +12,8 @@ template <int M, int NY>
 Innovations run_linear_as(const FilterModel& model, const FilterData& data, const FilterTrace& trace, const FilterNoise& noise) {
   const int n = trace.n, ny = trace.ny;
   const std::vector<double>& t = data.signals->t;
-  Innovations out{std::vector<double>(trace.samples * ny, 0.0), std::vector<double>(trace.samples * ny, 0.0)};
-  auto& [e, S] = out;
+  Innovations out;
+  out.resize(trace.samples * ny, !data.steps.empty());
   Kalman<M, NY> kalman(n, ny);
   start_covariance(model, data, noise, kalman);
   NoiseSteps steps(noise);
@@ -27,9 +26,10 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
       const std::size_t at = trace.place(k, o);
       if (data.use[at] == SampleRole::none) continue;
       a = trace.H_at(at);
-      S[at] = kalman.variance(a, o, noise.channels[o].white);
-      e[at] = trace.z[at] - a.dot(kalman.x) - kalman.j[2 * o];
-      kalman.update(e[at], S[at]);
+      const double variance = kalman.variance(a, o, noise.channels[o].white);
+      const double departure = trace.z[at] - a.dot(kalman.x) - kalman.j[2 * o];
+      const Reading reading = out.take(at, departure, variance, data.steps.empty() ? 0.0 : data.steps[o]);
+      kalman.update(reading.e, reading.S);
     }
     if (k + 1 == trace.samples) break;
     phi = trace.Phi_at(k);
@@ -60,10 +60,9 @@ Innovations run_linear(const FilterModel& model, const FilterData& data, const F
 }
 
 double minus_loglik(const FilterData& data, const Innovations& innovations) {
-  const auto& [e, S] = innovations;
   double sum = 0.0;
-  for (std::size_t i = 0; i < e.size(); ++i) {
-    if (data.use[i] == SampleRole::counted) sum += minus_log_normal(e[i], S[i]);
+  for (std::size_t i = 0; i < innovations.e.size(); ++i) {
+    if (data.use[i] == SampleRole::counted) sum += innovations.minus_log_density(i);
   }
   return sum;
 }

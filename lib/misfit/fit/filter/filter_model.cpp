@@ -5,6 +5,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/lists.h"
 #include "misfit/core/units.h"
+#include "misfit/model/whole_steps.h"
 
 namespace misfit {
 namespace {
@@ -66,7 +67,8 @@ int FilterModel::force_groups() const { return force_group.empty() ? 1 : 1 + *st
 FilterModel with_random_force(const Model& model) {
   static const EffectOf<RandomForce> effect("random_force");
   FilterModel out;
-  out.model = model;
+  out.model = before_whole_steps(model);
+  out.steps = steps_of_outputs(model);
   const SystemSpec& spec = model.system->spec();
   out.time_parameter = int_size(out.model.parameters);
   Parameter time{"force_time", "s", "correlation time of the random force", 0.1, 1e-6, 1e6, 0.1};

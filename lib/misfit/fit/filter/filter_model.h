@@ -15,6 +15,9 @@ struct FilterModel {
   std::vector<int> force_group;   ///< of each: ports of one dimension have one strength (FilterNoise::force_of), the first have group 0
   std::vector<int> kind;          ///< of each state: 0 force, 1 rate, 2 level (NoiseStep)
   int time_parameter = 0;
+  /// Of each channel, the whole steps that its measurements are read in, 0: none; empty: no channel is. What reads them is off in `model`:
+  /// it belongs to the update (reading.h), not to the prediction.
+  std::vector<double> steps = {};
 
   [[nodiscard]] int force_groups() const;  ///< at least 1
   [[nodiscard]] double force_time() const { return model.parameters[time_parameter].value; }

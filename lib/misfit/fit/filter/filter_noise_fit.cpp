@@ -4,19 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "misfit/fit/filter/normal_density.h"
 #include "misfit/jobs/work_queue.h"
 
 namespace misfit {
 namespace {
 
+void append(const Innovations& more, Innovations& out) {
+  for (const auto of : {&Innovations::e, &Innovations::S, &Innovations::departures, &Innovations::variances, &Innovations::minus_log})
+    (out.*of).insert((out.*of).end(), (more.*of).begin(), (more.*of).end());
+}
+
 /// All experiments, one after the other.
 Innovations run_all(const LinearisedRuns& runs, const FilterNoise& noise) {
   Innovations out;
   for (std::size_t k = 0; k < runs.data->size(); ++k) {
-    const auto [e, S] = run_linear(*runs.model, (*runs.data)[k], (*runs.traces)[k], noise);
-    out.e.insert(out.e.end(), e.begin(), e.end());
-    out.S.insert(out.S.end(), S.begin(), S.end());
+    append(run_linear(*runs.model, (*runs.data)[k], (*runs.traces)[k], noise), out);
   }
   return out;
 }
@@ -32,7 +34,7 @@ std::vector<bool> counted_innovations(const LinearisedRuns& runs) {
 double cost(const Innovations& s, const std::vector<bool>& counts) {
   double sum = 0.0;
   for (std::size_t i = 0; i < s.e.size(); ++i) {
-    if (counts[i]) sum += minus_log_normal(s.e[i], s.S[i]);
+    if (counts[i]) sum += s.minus_log_density(i);
   }
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
@@ -103,20 +105,28 @@ class Scoring {
     return at[i] < vector_.lower[i] + near || at[i] > vector_.upper[i] - near;
   }
 
+  /// Of innovations and variances.
+  struct Whitened {
+    std::vector<double> e, S;
+  };
+  [[nodiscard]] Whitened whitened_change(const Innovations& here, const Innovations& there, double scale) const {
+    Whitened out{std::vector<double>(here.e.size(), 0.0), std::vector<double>(here.e.size(), 0.0)};
+    for (std::size_t k = 0; k < here.e.size(); ++k) {
+      if (!counts_[k]) continue;
+      out.e[k] = (there.departure(k) - here.departure(k)) * scale / std::sqrt(here.S[k]);
+      out.S[k] = (there.variance(k) - here.variance(k)) * scale / here.S[k];
+    }
+    return out;
+  }
+
   void derivatives(const std::vector<double>& at, const Innovations& here) {
     constexpr double difference = 1e-4;
     const std::size_t n = at.size();
-    std::vector<Innovations> moved(n);
+    std::vector<Whitened> moved(n);
     run_jobs(n, threads_, [&](std::size_t i) {
       std::vector<double> there = at;
       there[i] += there[i] + difference < vector_.upper[i] ? difference : -difference;
-      moved[i] = run_all(runs_, unpacked(there));
-      const double scale = 1.0 / (there[i] - at[i]);
-      for (std::size_t k = 0; k < here.e.size(); ++k) {
-        if (!counts_[k]) continue;
-        moved[i].e[k] = (moved[i].e[k] - here.e[k]) * scale / std::sqrt(here.S[k]);
-        moved[i].S[k] = (moved[i].S[k] - here.S[k]) * scale / here.S[k];
-      }
+      moved[i] = whitened_change(here, run_all(runs_, unpacked(there)), 1.0 / (there[i] - at[i]));
     });
     gradient_ = Eigen::VectorXd::Zero(n);
     information_ = Eigen::MatrixXd::Zero(gradient_.size(), gradient_.size());

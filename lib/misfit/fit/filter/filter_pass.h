@@ -61,7 +61,7 @@ class FilterPass {
  private:
   using StateVector = typename Kalman<M, NY>::StateVector;
   static constexpr Eigen::Index twice(int count) { return 2 * static_cast<Eigen::Index>(count); }
-  static constexpr double kLogTwoPi = 1.8378770664093453;
+  [[nodiscard]] double step_of(int o) const { return data_.steps.empty() ? 0.0 : data_.steps[o]; }
 
   void begin_derivatives() {
     const auto rows = static_cast<Eigen::Index>(std::count(data_.use.begin(), data_.use.end(), SampleRole::counted));
@@ -98,7 +98,8 @@ class FilterPass {
       for (int i = 0; i < n_; ++i) a_[i] = outputs_.row(o)[i];
       Eigen::Map<Eigen::VectorXd>(trace_.H.data() + at * N_, n_) = a_;
       trace_.y[at] = outputs_.y(o) + kalman_.j[twice(o)];
-      trace_.y_variance[at] = kalman_.variance(a_, o, noise_.channels[channel].white);
+      const double step = step_of(o);
+      trace_.y_variance[at] = kalman_.variance(a_, o, noise_.channels[channel].white) + step * step / 12.0;
     }
     return true;
   }
@@ -110,16 +111,17 @@ class FilterPass {
     const SampleRole use = data_.use[at];
     if (use == SampleRole::none) return true;
     a_ = trace_.H_at(at);
-    const double S = kalman_.variance(a_, o, noise_.channels[channel].white);
+    const double variance = kalman_.variance(a_, o, noise_.channels[channel].white);
     const double z = signals_.measured[channel].values[k] - outputs_.y(o);
-    const double innovation = z - a_.dot(kalman_.x) - kalman_.j[twice(o)];
-    if (!(S > 0.0) || !std::isfinite(innovation)) return false;
-    if (options_.rejected != nullptr && is_wild(at, channel, innovation * innovation > kOutlierGate * kOutlierGate * S)) return true;
+    const double departure = z - a_.dot(kalman_.x) - kalman_.j[twice(o)];
+    if (!(variance > 0.0) || !std::isfinite(departure)) return false;
+    const double gate = kOutlierGate * std::sqrt(variance) + 0.5 * step_of(o);
+    if (options_.rejected != nullptr && is_wild(at, channel, std::abs(departure) > gate)) return true;
     trace_.z[at] = z;
-    trace_.e[at] = innovation;
-    trace_.S[at] = S;
-    count(use, -0.5 * (kLogTwoPi + std::log(S) + innovation * innovation / S));
-    kalman_.update(innovation, S);
+    const Reading reading = trace_.take(at, departure, variance, step_of(o));
+    if (!std::isfinite(reading.minus_log)) return false;
+    count(use, -reading.minus_log);
+    kalman_.update(reading.e, reading.S);
     Eigen::Map<Eigen::VectorXd>(trace_.K.data() + at * N_, n_) = kalman_.gain;
     Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * ny_, twice(ny_)) = kalman_.gain_coloured;
     if (options_.jacobian != nullptr) differentiate_update(at, o, use);

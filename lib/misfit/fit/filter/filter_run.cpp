@@ -11,7 +11,7 @@
 namespace misfit {
 namespace {
 
-void resize(FilterTrace& trace, int n, int ny, std::size_t samples) {
+void resize(FilterTrace& trace, int n, int ny, std::size_t samples, bool in_steps) {
   trace.n = n;
   trace.ny = ny;
   trace.samples = samples;
@@ -22,8 +22,7 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples) {
   trace.predicted.assign(samples * n, 0.0);
   trace.K.assign(samples * ny * n, 0.0);
   trace.Kj.assign(samples * ny * 2 * ny, 0.0);
-  trace.e.assign(samples * ny, 0.0);
-  trace.S.assign(samples * ny, 0.0);
+  trace.Innovations::resize(samples * ny, in_steps);
   trace.y.assign(samples * ny, std::nan(""));
   trace.y_variance.assign(samples * ny, std::nan(""));
   trace.P.clear();
@@ -63,6 +62,23 @@ double departure_from_start(const ReconstructedStates& states, const Signals& si
 
 }  // namespace
 
+void Innovations::resize(std::size_t measurements, bool in_steps) {
+  for (auto* all : {&e, &S}) all->assign(measurements, 0.0);
+  for (auto* read : {&departures, &variances, &minus_log}) read->assign(in_steps ? measurements : 0, 0.0);
+}
+
+Reading Innovations::take(std::size_t place, double departure, double white_variance, double step) {
+  const double variance = white_variance + std::pow(kWhiteOfSteps * step, 2);
+  const Reading reading = step > 0.0 ? read_in_steps(departure, variance, step) : read_as_it_is(departure, variance);
+  e[place] = reading.e;
+  S[place] = reading.S;
+  if (departures.empty()) return reading;
+  departures[place] = departure;
+  variances[place] = variance;
+  minus_log[place] = reading.minus_log;
+  return reading;
+}
+
 FilterData filter_data(const FilterModel& model, const Signals& signals, double integration, const IntegrationPlan* plan) {
   FilterData out;
   out.signals = &signals;
@@ -85,6 +101,7 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
       out.use[i * ny + o] = i < signals.exclude ? SampleRole::update : signals.held_out(i) ? SampleRole::validation : SampleRole::counted;
     }
   }
+  out.steps = model.steps;
   out.start = states.x.row(shown_at).transpose();
   out.covariance = Eigen::MatrixXd::Zero(model.model.states(), model.model.states());
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -104,6 +121,7 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
 
 FilterData filter_data_like(const FilterModel& model, const FilterData& data) {
   FilterData out = data;
+  out.steps = model.steps;
   const Eigen::Index system = model.model.system_states(), all = model.model.states();
   out.start = Eigen::VectorXd::Zero(all);
   out.covariance = Eigen::MatrixXd::Zero(all, all);
@@ -120,7 +138,7 @@ void FilterRunner::set_parameters(const std::vector<double>& values) { stepper_.
 
 bool FilterRunner::run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterRunOptions& options) {
   const int n = stepper_.states(), ny = stepper_.evaluator().outputs();
-  resize(trace, n, ny, data.signals->samples());
+  resize(trace, n, ny, data.signals->samples(), !data.steps.empty());
   if (options.keep_P) trace.P.assign(trace.samples * n * (n + 2 * ny), 0.0);
   const FilterPassInput input{*model_, data, noise, options};
   return with_filter_size(n, ny, [&]<int M, int NY>() { return FilterPass<M, NY>(input, stepper_, trace).run(); });

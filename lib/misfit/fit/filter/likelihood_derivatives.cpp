@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "misfit/fit/filter/normal_density.h"
 #include "misfit/jobs/work_queue.h"
 #include "misfit/math/covariance.h"
 
@@ -43,8 +42,8 @@ void fill_whitened(const std::vector<FilterData>& data, const ThreeRuns& runs, d
     for (std::size_t i = 0; i < data[e].use.size(); ++i) {
       if (data[e].use[i] != SampleRole::counted) continue;
       const double S = runs.here[e].S[i];
-      column[row] = (above.e[i] - below.e[i]) * per_step / std::sqrt(S);
-      column[rows + row++] = (above.S[i] - below.S[i]) * per_step / (std::numbers::sqrt2 * S);
+      column[row] = (above.departure(i) - below.departure(i)) * per_step / std::sqrt(S);
+      column[rows + row++] = (above.variance(i) - below.variance(i)) * per_step / (std::numbers::sqrt2 * S);
     }
   }
 }
@@ -175,7 +174,7 @@ Eigen::Index counted_measurements(const FilterEstimate& estimate) {
 
 double log_density(const FilterTrace& trace, std::size_t place) {
   if (!(trace.S[place] > 0.0)) return 0.0;
-  return -minus_log_normal(trace.e[place], trace.S[place]);
+  return -trace.minus_log_density(place);
 }
 
 double ExactObjective::at(const Eigen::VectorXd& theta, const FilterNoise& noise) const {

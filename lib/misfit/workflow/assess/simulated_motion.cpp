@@ -167,11 +167,21 @@ Experiment experiment_of(const FilterWork& work, const FilterData& data) {
   return e;
 }
 
+/// Channels as they are read: in whole steps, where they are; from which level these are counted makes no difference to a motion.
+void round_to_steps(const FilterModel& model, Signals& made) {
+  for (std::size_t o = 0; o < model.steps.size(); ++o) {
+    const double step = model.steps[o];
+    if (!(step > 0.0)) continue;
+    for (double& y : made.measured[o].values) y = step * std::round(y / step);
+  }
+}
+
 std::vector<MotionNumbers> simulated_numbers(const FilterWork& work, const StochasticModel& model, std::uint64_t seed,
                                              const Experiment& e) {
   std::vector<MotionNumbers> out;
-  const std::optional<Signals> made = noisy_run(model, e.measured, e.start, seed);
+  std::optional<Signals> made = noisy_run(model, e.measured, e.start, seed);
   if (!made) return out;
+  round_to_steps(work.estimate->forced, *made);
   const std::vector<MotionPath> paths = paths_of(work.estimate->model, *made);
   for (std::size_t p = 0; p < paths.size(); ++p) out.push_back(motion_numbers(at_own_rows(paths[p], e.own[p]), e.scales[p]));
   return out;
