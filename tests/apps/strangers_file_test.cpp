@@ -105,8 +105,8 @@ TEST(StrangersFile, OfAHouseWithHeavyWallsItNamesWhatTheyStore) {
   EXPECT_THAT(v.sentence, testing::StartsWith("lag was missing"));
 }
 
-/// Every measurement is a multiple of 0.0586 K, by which the filter takes more for noise than anything else; what is held out it predicts
-/// worse with the rounding, of which it is too sure. Simulated by the bench of strangers (thermal_house, seed 460).
+/// Every measurement is a multiple of 0.0586 K, of which the noise is more than any other; with 0.2 of a step of its own, it gains little
+/// to know that. Simulated by the bench of strangers (thermal_house, seed 460).
 TEST(StrangersFile, OfAHouseWithACoarseThermometerItNamesTheSteps) {
   const TemporaryFolder folder;
   folder.write("house.csv", content(paths::source() / "tests/apps/records/house_with_coarse_thermometer.csv"));
@@ -119,7 +119,7 @@ TEST(StrangersFile, OfAHouseWithACoarseThermometerItNamesTheSteps) {
   EXPECT_TRUE(first.at("accepted").get<bool>()) << outcome.out;
   EXPECT_THAT(first.at("why").get<std::string>(), HasSubstr("seen in the measurements themselves"));
   EXPECT_NEAR(first.at("parameters").at("step").at("value").get<double>(), 0.058641, 1e-6);
-  EXPECT_GT(first.at("held_out_gain").get<double>(), 10.0);
+  EXPECT_NEAR(first.at("held_out_gain").get<double>(), 0.0, 6.0) << "-160 with a sawtooth that is predicted to a hundredth of a step";
 }
 
 /// Steps of 0.81 K on a range of 5.5 K, most measurements equal to the one before: with them as noise the house follows in 3010 ± 370 s.

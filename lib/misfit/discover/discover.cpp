@@ -106,7 +106,7 @@ class Search {
   void refit_the_best_asked_for() {
     const auto wanted = [&](const RankedCandidate& e) { return options_.refit_best_of && options_.refit_best_of(e.candidate); };
     const auto best = std::find_if(ranked_.begin(), ranked_.end(), wanted);
-    if (best == ranked_.end() || !may_be_significant(*best, options_.p_accept)) return;
+    if (best == ranked_.end() || !(may_be_significant(*best, options_.p_accept) || waves_->reads_coarse_steps(*best))) return;
     waves_->refit_alone(*best);
     std::stable_partition(ranked_.begin(), ranked_.end(), [](const RankedCandidate& e) { return e.refit_begun; });
   }

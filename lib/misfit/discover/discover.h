@@ -29,7 +29,8 @@ struct DiscoverOptions {
   double p_accept = 0.01;                    ///< family-wise
   int max_refits = 6;                        ///< in one wave; which waves there are: lib/misfit/README.md, 6.5, step 1
   std::string only;                          ///< key of an effect: it alone is screened, and the drop of one Gauss–Newton step predicted
-  /// With `only`: the best of these candidates is refitted, too, if it may be significant, and stands first; empty: none is.
+  /// With `only`: the best of these candidates is refitted, too, if it may be significant or is seen in the measurements, and stands first;
+  /// empty: none is.
   std::function<bool(const Candidate&)> refit_best_of = {};
   ProgressFn progress = {};  ///< called with (done, total) as the search goes on
   /// Where refits are kept as they end, to be shared by ranks and found again by a search that was stopped; nullopt: in memory.

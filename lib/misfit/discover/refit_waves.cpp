@@ -110,14 +110,14 @@ void RefitWaves::refit_where_signs_are_lost() {
   }
 }
 
+bool RefitWaves::reads_coarse_steps(const RankedCandidate& e) const {
+  if (step_of_measurements(e.screening->candidate_model->model.effects.back()) < 0) return false;
+  const Model model = start_model(context_.estimate, *e.screening, context_.registry);
+  return on_whole_steps(model, context_.experiments) && are_coarse_steps(model, context_.estimate);
+}
+
 void RefitWaves::refit_where_steps_are_coarse() {
-  const auto begins = [&](const RankedCandidate& e) {
-    const CandidateModel& candidate_model = *e.screening->candidate_model;
-    if (step_of_measurements(candidate_model.model.effects.back()) < 0) return false;
-    const Model model = start_model(context_.estimate, *e.screening, context_.registry);
-    return on_whole_steps(model, context_.experiments) && are_coarse_steps(model, context_.estimate);
-  };
-  refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_steps"});
+  refit_wave({.begin = [&](const RankedCandidate& e) { return reads_coarse_steps(e) ? e.screening : nullptr; }, .name = "_steps"});
 }
 
 /// The model without any effect fitted to other measurements, to which the estimate points; nullopt: it cannot be.

@@ -24,6 +24,8 @@ class RefitWaves {
   void refit_where_signs_are_lost();
   /// Outputs that are read in whole steps, where these are coarse: the score of a sawtooth promises little of what reading them so gains.
   void refit_where_steps_are_coarse();
+  /// Of such an output.
+  [[nodiscard]] bool reads_coarse_steps(const RankedCandidate& e) const;
   /// Those with a predicted drop above half of the best; under mpirun, where no rank knows what another accepts, all that are significant.
   void refit_the_best();
   /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum, nor one of a sign that a sensor
