@@ -13,6 +13,7 @@
 #include "misfit/fit/filter/k_step.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/model/provisional.h"
+#include "misfit/model/whole_steps.h"
 #include "misfit/workflow/assess/assess.h"
 #include "misfit/workflow/assess/without.h"
 #include "misfit/workflow/ladder.h"
@@ -103,11 +104,18 @@ class Extension {
                        [&](const Candidate& c) { return c.effect == candidate.effect && c.roles == candidate.roles; });
   }
 
+  /// Is the last effect one of whole steps? That is seen in the measurements: what is held out tells nothing of it, but what else is
+  /// missing.
+  [[nodiscard]] static bool reads_steps(const Session& session) {
+    const Model model = provisional_model(session.model.request, session.registry);
+    return !model.effects.empty() && reads_whole_steps(model, model.effects.back());
+  }
+
   /// False: the rung gains too little once it is fitted, as why_off_ says, and is off again.
   bool add(const Candidate& candidate, std::vector<Candidate> alternatives) {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
-    if (rung.actual_drop) {
+    if (rung.actual_drop && !reads_steps(ladder_.last())) {
       why_off_ = why_too_little(rung.actual_drop, rung.held_out_gain, parameters_added(rung), families_);
       if (!why_off_.empty()) {
         const std::string name = effect_at(candidate.effect, candidate.roles);
