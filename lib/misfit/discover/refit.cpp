@@ -308,8 +308,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
     if (no_maximum() || out.estimate.objective < off) estimate_from(off_model(work, screening), without.noise);
   }
   const bool in_time = !no_maximum() || !watch.spent();
-  if (!in_time && !out.ok) return unfinished(screening, watch.words());
-  if (!out.ok) return out;
+  if (!out.ok) return in_time ? out : unfinished(screening, watch.words());
   if (in_time) narrow_smoothings(work, out);
   if (in_time) shorten_numerical_times(work, out);
   const bool whole_tried = in_time && fix_whole_strengths(work, screening, out);
