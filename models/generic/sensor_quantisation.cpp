@@ -11,7 +11,7 @@ using namespace misfit;
 /// has no derivative. Step and level are usually known or seen at once (the smallest difference of two measurements, and any of them) and
 /// are held; where the output's own noise is above a third of a step, rounding is only a little more noise (step/sqrt(12)).
 /// With `rounded` held at 1, filter_error predicts no rounding: it takes each measurement for the interval of a step that it stands for
-/// (lib/misfit/README.md, 5.6), and this formula is for simulation and output error alone.
+/// (lib/misfit/README.md, 5.6), and what is simulated is rounded to it; this formula is for output error alone.
 struct SensorQuantisation {
   static constexpr const char* formula = "y = h + rounded step/pi sum_{k=1..3} (-1)^k/k sin(2 pi k (h - level)/step)";
   static constexpr const char* symbols =

@@ -1,7 +1,7 @@
 // The refits of discover on the stored queue: shared by ranks, found again after a sudden end.
 
 #include "tests/apps/on_ranks.h"
-#include "tests/apps/short_flight.h"
+#include "tests/apps/oscillator_study.h"
 
 namespace {
 
@@ -15,7 +15,7 @@ class DiscoverJobs : public testing::Test {
   }
   [[nodiscard]] std::string candidates(const std::string& out) const { return content(study_.path(out) / "candidates.json"); }
 
-  const ShortFlight study_{"parachute_spherical", 20.0};
+  const OscillatorStudy study_;
 };
 
 TEST_F(DiscoverJobs, ASearchThatWasKilledGoesOnToTheSameAnswer) {

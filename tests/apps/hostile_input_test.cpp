@@ -2,6 +2,9 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
+
+#include "misfit/core/table.h"
 #include "tests/apps/program.h"
 #include "tests/paths.h"
 
@@ -255,6 +258,23 @@ TEST(Simulate, NoiseBeyondTheFiniteNumbersIsRefused) {
   const Outcome outcome = tank.run("simulate");
   EXPECT_EQ(outcome.status, 1);
   expect_parts(outcome.err, {"output y", "finite"});
+}
+
+/// x' = -x + u from 1 without an input: exp(-t), measured to half a step, with what it was beside.
+TEST(Simulate, AnOutputInWholeStepsIsRounded) {
+  const Tank tank;
+  tank.write("study.toml", std::string(Tank::study) +
+                               "[effects.sensor_quantisation]\noutput = \"y\"\nstart = { rounded = 1, step = 0.25, level = 0.1 }\n"
+                               "fixed = [\"rounded\", \"step\", \"level\"]\n[simulate]\nduration = 2\nstep = 0.1\ninitial = { x = 1.0 }\n");
+  const Outcome outcome = tank.run("simulate");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const misfit::Table made = misfit::read_csv(tank.path("out/simulation.csv"));
+  const std::vector<double> t = made.values("t", "s"), y = made.values("y", "V"), truth = made.values("y_true", "V");
+  ASSERT_EQ(t.size(), 21U);
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    EXPECT_NEAR(truth[k], std::exp(-t[k]), 1e-6);
+    EXPECT_NEAR(y[k], 0.1 + 0.25 * std::round((truth[k] - 0.1) / 0.25), 1e-9);
+  }
 }
 
 /// Where memory ends depends on the moment; how it is said does not.

@@ -92,7 +92,7 @@ starts = 5
     std::string text = "t[s],u[N],y[m]\n";
     std::mt19937 random(3);
     std::normal_distribution<double> noise(0.0, 0.005);
-    constexpr int samples = 600, steps = 40;
+    constexpr int samples = 400, steps = 40;
     constexpr double dt = 0.05, h = dt / steps;
     double y = 0.5, w = 0.0;
     for (int i = 0; i < samples; ++i) {

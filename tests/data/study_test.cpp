@@ -237,6 +237,9 @@ TEST_F(StudyFolder, AFileThatIsMissingNamesLineAndNearest) {
 TEST_F(StudyFolder, AnEffectIsATableOfTexts) {
   expect_parts(error_with("[effects]\ngravity = true\n"), {"study.toml:4:1", "effects.gravity", "gravity = {}"});
   expect_parts(error_with("[effects]\ngravity = { rate = 1 }\n"), {"study.toml:4", "effects.gravity.rate", "text"});
+  expect_parts(error_with("[effects]\ngravity = { fixd = [\"m\"] }\n"),
+               {"study.toml:4", "'fixd' in [effects.gravity]", "did you mean 'fixed'"});
+  expect_parts(error_with("[effects]\ngravity = { strt = { m = 1 } }\n"), {"study.toml:4", "'strt'", "did you mean 'start'"});
 }
 
 TEST_F(StudyFolder, ACurveWithKnotsOrATableNeedsItsQuantityAndKnotsIncrease) {

@@ -34,3 +34,12 @@ TEST(WholeStepsOfOutputs, AreNoneWhereAPartIsEstimatedOrThereIsNoSuchEffect) {
     EXPECT_EQ(before_whole_steps(model).values(), model.values());
   }
 }
+
+TEST(WholeStepsOfOutputs, AreReadFromTheirLevel) {
+  Model model = with_rounded(1.0, false);
+  model.parameters[static_cast<std::size_t>(model.find_parameter("level"))].value = 0.1;
+  EXPECT_DOUBLE_EQ(as_read(model, 1, 0.73), 0.85);
+  EXPECT_DOUBLE_EQ(as_read(model, 1, -0.26), -0.15);
+  EXPECT_DOUBLE_EQ(as_read(model, 0, 0.73), 0.73);
+  EXPECT_DOUBLE_EQ(as_read(with_rounded(0.5, false), 1, 0.73), 0.73);
+}

@@ -98,7 +98,7 @@ TEST(GnuplotLeaves, TheFilesOfTheFigureOnly) {
   EXPECT_EQ(folder.entries(), 3U);
   folder.write("bad.gp", "plot nonsense from here\n");
   expect_parts(message_of<RunError>([&] {
-                 run_gnuplot(folder.path(), "bad", {"A title", "What it shows"});
+                 run_gnuplot(folder.path(), {{"bad", {"A title", "What it shows"}}});
                }),
                {"gnuplot failed", "bad.gp", "nonsense"});
   EXPECT_EQ(folder.entries(), 4U);
@@ -109,7 +109,7 @@ TEST(GnuplotLeaves, ADrawingThatEndsTooSoonOut) {
   folder.write("half.svg", "the old drawing");
   folder.write("half.gp", "set terminal svg\nset output out\nplot sin(x)\nset output\nexit\n");
   expect_parts(message_of<RunError>([&] {
-                 run_gnuplot(folder.path(), "half", {"A title", "What it shows"});
+                 run_gnuplot(folder.path(), {{"half", {"A title", "What it shows"}}});
                }),
                {"gnuplot failed", "half.gp", "it says nothing"});
   EXPECT_EQ(read_file(folder.path() / "half.svg"), "the old drawing");
@@ -120,9 +120,41 @@ TEST(GnuplotDrawing, ThatCannotBeWrittenIsToldFromOneThatCannotBeDrawn) {
   static_cast<void>(drawn(folder.path()));
   fs::remove(folder.path() / "line.svg");
   fs::create_directory(folder.path() / "line.svg");
-  const std::string message = message_of<RunError>([&] { run_gnuplot(folder.path(), "line", {"A title", "What it shows"}); });
+  const std::string message = message_of<RunError>([&] { run_gnuplot(folder.path(), {{"line", {"A title", "What it shows"}}}); });
   expect_parts(message, {"line.svg", "cannot be written"});
   EXPECT_EQ(message.find("gnuplot failed"), std::string::npos);
+}
+
+/// Settings, variables, functions and panels of one script reach no other, whatever it ends with.
+TEST(FiguresTogether, AreDrawnAsEachAlone) {
+  const TemporaryFolder alone, together;
+  const std::string expected = drawn(alone.path());
+  const DrawingWords words{"A title", "What it shows"};
+  const std::string plain = "set terminal svg\nset output out\nplot sin(x)\nset output\ndrawn = 1\n";
+  alone.write("plain.gp", plain);
+  together.write("plain.gp", plain);
+  together.write("first.gp",
+                 "set terminal svg size 90, 90 dynamic\nset output out\nf(x) = 3\nx = 5\nset logscale y\nset linetype 1 lc rgb 'red'\n"
+                 "set datafile separator ';'\nset multiplot layout 2, 1\nplot [1:2] x\nplot [1:2] x\ndrawn = 1\n");
+  static_cast<void>(drawn(together.path()));
+  const std::vector<std::string> drawings =
+      run_gnuplot(together.path(), {{"first", words}, {"plain", words}, {"line", words}, {"plain", words}});
+  ASSERT_EQ(drawings.size(), 4U);
+  EXPECT_EQ(drawings[1], run_gnuplot(alone.path(), {{"plain", words}}).front());
+  EXPECT_EQ(drawings[2], run_gnuplot(alone.path(), {{"line", words}}).front());
+  EXPECT_EQ(drawings[3], drawings[1]);
+  EXPECT_EQ(read_file(together.path() / "line.svg"), drawings[2]);
+}
+
+TEST(FiguresTogether, AreDrawnUpToTheOneThatFails) {
+  const TemporaryFolder folder;
+  static_cast<void>(drawn(folder.path()));
+  fs::remove(folder.path() / "line.svg");
+  folder.write("bad.gp", "set terminal svg\nset output out\nset multiplot\nplot nonsense from here\ndrawn = 1\n");
+  const DrawingWords words{"A title", "What it shows"};
+  const std::string message = message_of<RunError>([&] { run_gnuplot(folder.path(), {{"line", words}, {"bad", words}}); });
+  expect_parts(message, {"gnuplot failed", "bad.gp", "nonsense"});
+  EXPECT_TRUE(fs::exists(folder.path() / "line.svg"));
 }
 
 TEST(FigureNames, AreMadeUnlikeEachOther) {

@@ -193,6 +193,13 @@ void read_initial(const Section& root, Study& study) {
 
 namespace {
 
+/// Any key but those of every effect is a role, which is a text; what is none and looks like one of those keys is mistyped.
+std::string read_role(const DescribedSection& section, const std::string& key) {
+  const std::vector<std::string> keys = {"kind", "formula", "start", "free", "fixed"};
+  if (!section.is_text(key) && !nearest_name(key, keys).empty()) section.fail_unknown(key, keys);
+  return section.text(key).value_or("");
+}
+
 /// Starts, formula or kind and roles of one effect.
 EffectStudy read_effect(const DescribedSection& section, const std::string& name) {
   EffectStudy effect;
@@ -201,7 +208,7 @@ EffectStudy read_effect(const DescribedSection& section, const std::string& name
   effect.kind = effect.declared ? name : section.text("kind").value_or(name);
   for (const std::string& role : section.keys()) {
     if (!effect.declared && role != "kind" && role != "start" && role != "free" && role != "fixed")
-      effect.roles[role] = section.text(role).value_or("");
+      effect.roles[role] = read_role(section, role);
   }
   if (section.has("start")) {
     const DescribedSection start = described(section, "start", "effects.NAME.start");

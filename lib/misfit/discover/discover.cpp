@@ -49,7 +49,7 @@ class Search {
       waves_->refit_what_fell_short();
       waves_->refit_beside_an_edge_not_visited();
       waves_->refit_what_promises_little();
-      if (find_higher() || (options_.refits && !ranks().first())) return {};
+      if (find_higher()) return {};
       unexplained = what_is_accepted();
       if (none_accepted() && waves_->refit_the_other_nominated()) unexplained = what_is_accepted();
       const bool more_to_try = !is_of_unknown_form(ranked_, unknown_, context());

@@ -44,8 +44,8 @@ struct DiscoverOptions {
 /// and of unknown curves, with shapes scanned; refits of those worth it; groups that the data cannot separate; acceptance by family-wise
 /// p-value and held-out gain. With `only` the answer holds that one candidate,
 /// its p-value corrected for all families a whole search would look at; no candidate where the effect cannot be screened (it has no
-/// strength, does not suit the system, is driven by noise, or another effect stands for it). With `refits` the answer of ranks other than
-/// the first is empty. RunError: stopped. A refit that its time limit has cut off is named and says nothing of its effect; where that of
+/// strength, does not suit the system, is driven by noise, or another effect stands for it). With `refits` all ranks come to the same
+/// answer. RunError: stopped. A refit that its time limit has cut off is named and says nothing of its effect; where that of
 /// the round is spent, the answer is what was found until then, and says so (discover/unfinished.h).
 [[nodiscard]] Discovery discover(const FittedStudy& fitted, const DiscoverOptions& options = {});
 

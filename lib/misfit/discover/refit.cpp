@@ -353,8 +353,8 @@ double HeldOut::gain(const FilterEstimate& with) {
 }
 
 double HeldOut::growth_ahead(const FilterEstimate& with) {
-  if (!ahead_before_) ahead_before_ = k_step_errors(without_);
-  return growth_of_errors(ahead_before_->rms, k_step_errors(with).rms);
+  if (!ahead_before_) ahead_before_ = k_step_errors(without_, ComparedSamples::both);
+  return growth_of_errors(ahead_before_->rms, k_step_errors(with, ComparedSamples::both).rms);
 }
 
 }  // namespace misfit

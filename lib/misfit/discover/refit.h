@@ -115,7 +115,7 @@ class HeldOut {
 
   /// TimeLimitReached: a limit of time was spent in one of these fits.
   [[nodiscard]] double gain(const FilterEstimate& with);
-  /// Of the errors of predictions farther ahead than one sample (growth_of_errors()).
+  /// Of the errors of predictions farther ahead than one sample (growth_of_errors()), in what is fitted and what is held out together.
   [[nodiscard]] double growth_ahead(const FilterEstimate& with);
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 
 #include "misfit/core/watch.h"
@@ -96,8 +97,8 @@ std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const 
   const auto results = run_stored_jobs(
       all, [&](std::size_t k) { return pack(one(k), *effects[k]); }, jobs.progress, jobs.stop);
   if (!results) return std::nullopt;
-  if (!ranks().first()) return out;
   for (std::size_t k = 0; k < effects.size(); ++k) out.push_back(unpack_refit(results->result(k), work, *effects[k]));
+  std::ignore = ranks().agree(true);  // all have read them: the next jobs of a rank are written over these
   return out;
 }
 

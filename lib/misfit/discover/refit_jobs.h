@@ -25,7 +25,7 @@ struct RefitJobs {
 /// A job each, in the order of `effects`; the answer does not depend on threads and ranks.
 ///
 /// With `stored` (its `count` follows from the effects) each is on disk when it ends and the ranks share them (run_stored_jobs()): a search
-/// begun again goes on; on ranks other than the first the answer is empty. nullopt if `stop` became true before all were done.
+/// begun again goes on. nullopt if `stop` became true before all were done.
 [[nodiscard]] std::optional<std::vector<SteppedRefit>> refit_all(const RefitWork& work, const ScoreTest& score,
                                                                  const std::vector<const ScreeningResult*>& effects,
                                                                  const RefitJobs& jobs = {});

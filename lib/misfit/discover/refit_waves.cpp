@@ -14,7 +14,6 @@
 #include "misfit/discover/size_reading.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/fit/regression/lost_sign.h"
-#include "misfit/jobs/ranks.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/whole_steps.h"
 
@@ -34,7 +33,6 @@ bool RefitWaves::may_explain_as(const RankedCandidate* most, const RankedCandida
 }
 
 std::optional<FilterEstimate> RefitWaves::higher() {
-  if (ranks().size() > 1) return std::nullopt;
   std::vector<const Refit*> refits;
   for (RankedCandidate& e : ranked_) {
     if (!e.refit || !(e.refit->drop > tied_drops) || e.no_higher_at == e.refit->drop) continue;
@@ -139,16 +137,14 @@ std::optional<FilterEstimate> RefitWaves::fitted_to(const std::vector<Signals>& 
 
 void RefitWaves::refit_the_best() {
   const double half = 0.5 * best_predicted();
-  const bool all = ranks().size() > 1;
   refit_wave({.begin = [&](const RankedCandidate& e) {
-    return (may_be_significant(e, context_.options.p_accept) && e.candidate.predicted_drop >= half) || (all && significant(e)) ? e.screening
-                                                                                                                               : nullptr;
+    return may_be_significant(e, context_.options.p_accept) && e.candidate.predicted_drop >= half ? e.screening : nullptr;
   }});
 }
 
 void RefitWaves::refit_the_significant_beyond_a_step() {
   constexpr double most_more = 10.0;
-  const RankedCandidate* first = ranks().size() > 1 ? nullptr : with_largest_drop(ranked_, context_.options.p_accept);
+  const RankedCandidate* first = with_largest_drop(ranked_, context_.options.p_accept);
   const auto begins = [&](const RankedCandidate& e) {
     return significant(e) && is_far_from_linear(e) && may_explain_as(first, e, e.candidate.predicted_drop, most_more);
   };
@@ -167,13 +163,10 @@ void RefitWaves::refit_what_the_free_run_shows() {
       return e.screening->candidate_model == s->candidate_model && e.refit && significant(e);
     });
   });
-  refit_nominated({nominated_.begin(), ranks().size() > 1 ? nominated_.end() : known}, "_free_run");
+  refit_nominated({nominated_.begin(), known}, "_free_run");
 }
 
-bool RefitWaves::refit_the_other_nominated() {
-  if (!calm_ || ranks().size() > 1) return false;
-  return refit_nominated(nominated_, "_free_run_others");
-}
+bool RefitWaves::refit_the_other_nominated() { return calm_ && refit_nominated(nominated_, "_free_run_others"); }
 
 bool RefitWaves::refit_nominated(const std::vector<const ScreeningResult*>& nominated, const char* name) {
   const auto begin = [&](const RankedCandidate& e) -> const ScreeningResult* {
@@ -211,7 +204,6 @@ bool RefitWaves::significant_in_screening(const RankedCandidate& e) const {
 }
 
 bool RefitWaves::refit_the_other_significant_ones() {
-  if (ranks().size() > 1) return false;  // refitted with the first
   for (RankedCandidate& e : ranked_) e.candidate.group.clear();
   return refit_wave({.begin = [this](const RankedCandidate& e) { return significant(e) ? e.screening : nullptr; }, .name = "_others"});
 }
@@ -235,15 +227,14 @@ void RefitWaves::refit_beside_an_edge_not_visited() {
     return significant(e) && is_far_from_linear(e) &&
            std::find(ports.begin(), ports.end(), e.screening->candidate_model->port_names) != ports.end();
   };
-  if (ranks().size() == 1 && !ports.empty())
-    refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_edges"});
+  if (!ports.empty()) refit_wave({.begin = [&](const RankedCandidate& e) { return begins(e) ? e.screening : nullptr; }, .name = "_edges"});
 }
 
 void RefitWaves::refit_what_promises_little() {
   constexpr double most_more = 10.0;
   const double p_accept = context_.options.p_accept;
   const RankedCandidate* most = with_largest_drop(ranked_, p_accept);
-  if (ranks().size() > 1 || most == nullptr) return;
+  if (most == nullptr) return;
   const bool lags = most->screening->candidate_model->lags;
   const double least = most->refit->drop - (lags ? 2.0 : 1.0) * tied_drops;
   std::vector<const ScreeningResult*> insignificant;
@@ -273,7 +264,6 @@ bool RefitWaves::refit_afresh() {
 
 /// Of the first few that are wanted. False: none gains.
 bool RefitWaves::refit_again(const Again& again) {
-  if (ranks().size() > 1) return false;
   constexpr std::size_t most = 3;
   std::vector<RankedCandidate*> chosen;
   std::vector<ScreeningResult> begin;
@@ -304,7 +294,7 @@ bool RefitWaves::refit_again(const Again& again) {
   return true;
 }
 
-/// `name`: of the stored jobs. Empty on ranks other than the first.
+/// `name`: of the stored jobs.
 std::vector<SteppedRefit> RefitWaves::refitted(const RefitWork& work, const ScoreTest& score,
                                                const std::vector<const ScreeningResult*>& effects, const char* name) {
   std::optional<StoredJobs> stored = context_.options.refits;

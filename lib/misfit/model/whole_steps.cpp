@@ -16,15 +16,18 @@ void at_whole_strengths(const BoundEffect& effect, Look look) {
   }
 }
 
+/// The parameter that the measurements show themselves, −1: the effect has none.
+int parameter_of(const BoundEffect& effect, OfMeasurements what) {
+  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
+  const auto found =
+      std::find_if(coefficients.begin(), coefficients.end(), [&](const CoefficientSpec& c) { return c.measured_as == what; });
+  if (found == coefficients.end() || effect.kind != PortKind::sensor) return -1;
+  return effect.coefficients[found - coefficients.begin()].parameter;
+}
+
 }  // namespace
 
-int step_of_measurements(const BoundEffect& effect) {
-  const std::vector<CoefficientSpec>& coefficients = effect.effect->spec().coefficients;
-  const auto step = std::find_if(coefficients.begin(), coefficients.end(),
-                                 [](const CoefficientSpec& c) { return c.measured_as == OfMeasurements::step; });
-  if (step == coefficients.end() || effect.kind != PortKind::sensor) return -1;
-  return effect.coefficients[step - coefficients.begin()].parameter;
-}
+int step_of_measurements(const BoundEffect& effect) { return parameter_of(effect, OfMeasurements::step); }
 
 bool reads_whole_steps(const Model& model, const BoundEffect& effect) {
   if (step_of_measurements(effect) < 0) return false;
@@ -45,6 +48,17 @@ std::vector<double> steps_of_outputs(const Model& model) {
     out[effect.ports.front()] = std::abs(model.parameters[step_of_measurements(effect)].value);
   }
   return out;
+}
+
+double as_read(const Model& model, int output, double value) {
+  for (const BoundEffect& effect : model.effects) {
+    if (!reads_whole_steps(model, effect) || effect.ports.front() != output) continue;
+    const double step = std::abs(model.parameters[step_of_measurements(effect)].value);
+    const int of_level = parameter_of(effect, OfMeasurements::level);
+    const double level = of_level < 0 ? 0.0 : model.parameters[of_level].value;
+    if (step > 0.0) value = level + step * std::round((value - level) / step);
+  }
+  return value;
 }
 
 Model before_whole_steps(Model model) {

@@ -17,6 +17,9 @@ namespace misfit {
 /// where all are.
 [[nodiscard]] std::vector<double> steps_of_outputs(const Model& model);
 
+/// What a value of an output [its unit] is read as: the nearest of the steps that it is read in, counted from their level, or itself.
+[[nodiscard]] double as_read(const Model& model, int output, double value);
+
 /// The model with such effects off: what is read before it is rounded.
 [[nodiscard]] Model before_whole_steps(Model model);
 

@@ -105,12 +105,29 @@ void make_names_unique(std::vector<Figure>& figures) {
   for (Figure& figure : figures) figure.name = unique_name(figure.name, used, ".");
 }
 
-std::filesystem::path write_figure(const std::filesystem::path& dir, const Figure& figure) {
-  check(figure);
+std::vector<std::string> write_figures(const std::filesystem::path& dir, const std::vector<Figure>& figures) {
+  if (figures.empty()) return {};
+  std::for_each(figures.begin(), figures.end(), check);
   make_writable_folder(dir);
-  write_csv(dir / (figure.name + ".csv"), numbers_of(figure));
-  write_atomically(dir / (figure.name + ".gp"), gnuplot_script(figure));
-  run_gnuplot(dir, figure.name, {figure.title.empty() ? figure.name : figure.title, alt_text(figure)});
+  std::vector<DrawingOrder> orders;
+  for (const Figure& figure : figures) {
+    write_csv(dir / (figure.name + ".csv"), numbers_of(figure));
+    write_atomically(dir / (figure.name + ".gp"), gnuplot_script(figure));
+    orders.push_back({figure.name, {figure.title.empty() ? figure.name : figure.title, alt_text(figure)}});
+  }
+  return run_gnuplot(dir, orders);
+}
+
+std::vector<std::string> files_of(const std::vector<Figure>& figures) {
+  std::vector<std::string> out;
+  for (const Figure& figure : figures) {
+    for (const char* extension : {".csv", ".gp", ".svg"}) out.push_back(figure.name + extension);
+  }
+  return out;
+}
+
+std::filesystem::path write_figure(const std::filesystem::path& dir, const Figure& figure) {
+  static_cast<void>(write_figures(dir, {figure}));
   return dir / (figure.name + ".svg");
 }
 

@@ -67,16 +67,14 @@ Figure batch_figure(const Batch& batch, const std::string& method, std::size_t m
 }
 
 std::vector<std::string> write_batch_figures(const std::filesystem::path& dir, const Batch& batch) {
-  std::vector<std::string> names, methods;
+  std::vector<std::string> methods;
   for (const BatchSummary& s : batch.summary) {
     if (std::find(methods.begin(), methods.end(), s.method) == methods.end()) methods.push_back(s.method);
   }
-  for (const std::string& method : methods) {
-    const Figure figure = batch_figure(batch, method);
-    write_figure(dir, figure);
-    for (const char* extension : {".csv", ".gp", ".svg"}) names.push_back(figure.name + extension);
-  }
-  return names;
+  std::vector<Figure> figures;
+  for (const std::string& method : methods) figures.push_back(batch_figure(batch, method));
+  static_cast<void>(write_figures(dir, figures));
+  return files_of(figures);
 }
 
 }  // namespace misfit::report

@@ -179,12 +179,9 @@ std::vector<Figure> interval_figures(const Resampling& resampling) {
 }
 
 std::vector<std::string> write_interval_figures(const std::filesystem::path& dir, const Resampling& resampling) {
-  std::vector<std::string> names;
-  for (const Figure& figure : interval_figures(resampling)) {
-    write_figure(dir, figure);
-    for (const char* extension : {".csv", ".gp", ".svg"}) names.push_back(figure.name + extension);
-  }
-  return names;
+  const std::vector<Figure> figures = interval_figures(resampling);
+  static_cast<void>(write_figures(dir, figures));
+  return files_of(figures);
 }
 
 }  // namespace misfit::report

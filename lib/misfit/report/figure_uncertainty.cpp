@@ -183,12 +183,9 @@ std::vector<Figure> uncertainty_figures(const Uncertainty& u, const std::vector<
 
 std::vector<std::string> write_uncertainty_figures(const std::filesystem::path& dir, const Uncertainty& u,
                                                    const std::vector<Reference>& references) {
-  std::vector<std::string> names;
-  for (const Figure& figure : uncertainty_figures(u, references)) {
-    write_figure(dir, figure);
-    for (const char* extension : {".csv", ".gp", ".svg"}) names.push_back(figure.name + extension);
-  }
-  return names;
+  const std::vector<Figure> figures = uncertainty_figures(u, references);
+  static_cast<void>(write_figures(dir, figures));
+  return files_of(figures);
 }
 
 }  // namespace misfit::report

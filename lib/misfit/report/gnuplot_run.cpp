@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <deque>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -90,7 +91,7 @@ class MemoryFile {
   int number_;
 };
 
-/// Printed if the script came to its end, where it sets `drawn`: gnuplot closes its drawing properly, and reads on, when a command fails.
+/// Printed if a script came to its end, where it sets `drawn`: gnuplot closes its drawing properly, and reads on, when a command fails.
 constexpr const char* all_drawn = "misfit: all drawn";
 
 bool complete(const std::string& drawing, const std::string& words) {
@@ -98,11 +99,29 @@ bool complete(const std::string& drawing, const std::string& words) {
          drawing.find("</svg>", drawing.size() < 64 ? 0 : drawing.size() - 64) != std::string::npos;
 }
 
-/// What gnuplot said, without our own line.
+/// Printed before script k is run.
+std::string begin_of(std::size_t k) { return fmt::format("misfit: script {}\n", k); }
+
+/// What gnuplot said of script k, without our own lines.
+std::string words_on(std::size_t k, const std::string& words) {
+  const std::size_t begin = words.find(begin_of(k));
+  if (begin == std::string::npos) return "";
+  const std::size_t from = begin + begin_of(k).size();
+  return words.substr(from, words.find(begin_of(k + 1), from) - from);
+}
+
 std::string shown(std::string words) {
   words = replace_all(words, all_drawn, "");
   const std::size_t end = words.find_last_not_of(" \n\r\t");
   return end == std::string::npos ? "it says nothing" : words.substr(0, end + 1);
+}
+
+/// Without the empty group that a drawing begins with: its colour is the last one of the drawing before.
+std::string without_first_group(std::string svg) {
+  constexpr std::string_view begin = "\n<g ", empty = ">\n</g>\n";
+  const std::size_t at = svg.find(begin), end = at == std::string::npos ? at : svg.find('>', at);
+  if (end != std::string::npos && std::string_view(svg).substr(end).starts_with(empty)) svg.erase(at + 1, end + empty.size() - at - 1);
+  return svg;
 }
 
 /// gnuplot calls every drawing "Gnuplot", and what has no legend by a number, which viewers show at the mouse.
@@ -123,23 +142,47 @@ std::string with_words(const std::string& svg, const DrawingWords& words) {
 /// Neither ~/.gnuplot nor ./.gnuplot (-d), nor GNUTERM, GNUPLOT_LIB, locale and the like of the user.
 constexpr const char* environment = "/usr/bin/env -i PATH=/usr/bin:/bin HOME=/nonexistent LC_ALL=C.UTF-8";
 
+/// One gnuplot for all: its start takes longer than most drawings. Each script finds it as after its start.
+std::vector<std::string> run_once(const fs::path& program, const fs::path& dir, const std::vector<DrawingOrder>& orders) {
+  const MemoryFile said("words of gnuplot");
+  std::deque<MemoryFile> drawings;
+  {
+    const IgnoreBrokenPipe guard;
+    std::string commands;
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+      commands += fmt::format("reset session\nprint '{}'\nout = '{}'\nload '{}.gp'\n", shown(begin_of(k)),
+                              drawings.emplace_back("drawing").path(), orders[k].name);
+      commands += fmt::format("unset multiplot\nunset output\nif (exists('drawn')) print '{}'\n", all_drawn);
+    }
+    Gnuplot gnuplot(fmt::format("cd -- {} && {} {} -d >{} 2>&1 || true", shell_quoted(fs::absolute(dir).string()), environment,
+                                shell_quoted(fs::absolute(program).string()), said.path()));
+    gnuplot << commands;
+  }
+  const std::string words = said.text();
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < orders.size(); ++k) {
+    const std::string svg = without_first_group(drawings[k].text()), of_it = words_on(k, words);
+    if (!complete(svg, of_it)) throw RunError("gnuplot failed on " + (dir / (orders[k].name + ".gp")).string() + ": " + shown(of_it));
+    out.push_back(with_words(svg, orders[k].words));
+    write_atomically(dir / (orders[k].name + ".svg"), out.back());
+  }
+  return out;
+}
+
 }  // namespace
 
-void run_gnuplot(const fs::path& dir, const std::string& name, const DrawingWords& words_of_it) {
+std::vector<std::string> run_gnuplot(const fs::path& dir, const std::vector<DrawingOrder>& orders) {
   const std::optional<fs::path> program = find_program("gnuplot");
   if (!program)
     throw RunError("gnuplot is not installed (not on the PATH): the figures cannot be drawn; their .csv and .gp files are in " +
                    dir.string());
-  const MemoryFile drawing("drawing"), said("words of gnuplot");
-  {
-    const IgnoreBrokenPipe guard;
-    Gnuplot gnuplot(fmt::format("cd -- {} && {} {} -d >{} 2>&1 || true", shell_quoted(fs::absolute(dir).string()), environment,
-                                shell_quoted(fs::absolute(*program).string()), said.path()));
-    gnuplot << fmt::format("out = '{}'\nload '{}.gp'\nif (exists('drawn')) print '{}'\n", drawing.path(), name, all_drawn);
+  std::vector<std::string> out;
+  constexpr std::size_t most = 100;  // files in memory at once
+  for (std::size_t first = 0; first < orders.size(); first += most) {
+    const std::vector<DrawingOrder> some(orders.begin() + std::ssize(out), orders.begin() + std::min(first + most, orders.size()));
+    for (std::string& svg : run_once(*program, dir, some)) out.push_back(std::move(svg));
   }
-  const std::string svg = drawing.text(), words = said.text();
-  if (!complete(svg, words)) throw RunError("gnuplot failed on " + (dir / (name + ".gp")).string() + ": " + shown(words));
-  write_atomically(dir / (name + ".svg"), with_words(svg, words_of_it));
+  return out;
 }
 
 }  // namespace misfit::report

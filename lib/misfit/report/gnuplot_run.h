@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace misfit::report {
 
@@ -10,9 +11,15 @@ struct DrawingWords {
   std::string title, description;
 };
 
-/// Draws DIR/NAME.svg with DIR/NAME.gp (NAME without quotes or blanks; the script honours `out` and ends with `drawn = 1`): the old drawing
-/// stays until the new one is complete. What gnuplot draws depends on the script alone: it reads neither .gnuplot nor the environment.
-/// RunError in words if gnuplot is not on the PATH or fails, WriteError if the drawing cannot be written.
-void run_gnuplot(const std::filesystem::path& dir, const std::string& name, const DrawingWords& words);
+struct DrawingOrder {
+  std::string name;  ///< of the script, without .gp: no quotes or blanks
+  DrawingWords words;
+};
+
+/// Draws DIR/NAME.svg of each with DIR/NAME.gp (the script honours `out` and ends with `drawn = 1`), all with one gnuplot, and returns the
+/// drawings (SVG): an old drawing stays until the new one is complete. What gnuplot draws depends on the script alone: it reads neither
+/// .gnuplot nor the environment, and forgets the scripts before. RunError in words if gnuplot is not on the PATH or fails, at the first
+/// that it fails on, WriteError if a drawing cannot be written.
+std::vector<std::string> run_gnuplot(const std::filesystem::path& dir, const std::vector<DrawingOrder>& orders);
 
 }  // namespace misfit::report

@@ -222,14 +222,26 @@ void Page::table(const TableBlock& table, Texts texts) {
   body_ += "</tbody></table></div>\n";
 }
 
-void Page::figure(const Figure& figure, const std::string& svg) {
-  body_ += "<figure>\n<div class=\"wide drawing\" tabindex=\"0\">" + inline_svg(svg, figure.name, alt_text(figure)) + "</div><figcaption>" +
-           html_text(figure.caption);
+void Page::figure(const Figure& figure) {
+  body_ += "<figure>\n<div class=\"wide drawing\" tabindex=\"0\">";
+  places_.push_back(body_.size());
+  figures_.push_back(figure);
+  body_ += "</div><figcaption>" + html_text(figure.caption);
   for (const std::string& note : figure.notes) body_ += " <span class=\"note\">" + html_text(note) + "</span>";
   body_ += fmt::format(
       " <span class=\"files\"><a href=\"figures/{0}.svg\">SVG</a> <a href=\"figures/{0}.csv\">CSV</a> <a "
       "href=\"figures/{0}.gp\">gnuplot</a></span></figcaption>\n</figure>\n",
       escape_html(figure.name));
+}
+
+void Page::draw(const std::filesystem::path& dir) {
+  const std::vector<std::string> drawings = write_figures(dir, figures_);
+  for (std::size_t k = drawings.size(); k-- > 0;) {
+    const Figure& figure = figures_[k];
+    body_.insert(places_[k], inline_svg(drawings[k], figure.name, alt_text(figure)));
+  }
+  figures_.clear();
+  places_.clear();
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <set>
 #include <string>
@@ -36,7 +37,9 @@ class Page {
   void subsection(const std::string& heading);
   void paragraph(const Paragraph& paragraph);  ///< a command as it is written
   void table(const TableBlock& table, Texts texts = Texts::typeset);
-  void figure(const Figure& figure, const std::string& svg);  ///< drawing, caption, notes
+  void figure(const Figure& figure);  ///< caption, notes and the place of its drawing
+  /// Draws all figures together, into `dir` (write_figures()) and onto the page.
+  void draw(const std::filesystem::path& dir);
   /// A name for the next figure: `name`, or if a figure of the page has it one with a number behind.
   [[nodiscard]] std::string free_figure_name(const std::string& name) { return unique_name(name, figure_names_, "."); }
   void html(const std::string& markup) { body_ += markup; }
@@ -53,6 +56,8 @@ class Page {
   bool folds_ = false, folded_ = false;
   std::vector<std::string> sections_;
   std::set<std::string> figure_names_;
+  std::vector<Figure> figures_;  // that are not drawn yet, and where in the body they belong
+  std::vector<std::size_t> places_;
 };
 
 /// What a figure shows, in a sentence for those who do not see it: title, axes with the ranges that are drawn, curves by their names.

@@ -9,7 +9,7 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   make_writable_folder(dir);
   Page page(input.study.empty() ? "Report" : input.study, input.run.date);
   page.question(input.question);
-  Draw draw(dir / "figures", page);
+  Draw draw(page);
   verdict_section(input, page, draw);
   ladder_section(input, page, draw);
   const std::vector<ModelResults> models = models_of(input);
@@ -31,6 +31,7 @@ std::filesystem::path write_report(const std::filesystem::path& dir, const Repor
   notes_section(input, page);
   words_section(page);
   provenance_section(input, page);
+  page.draw(dir / "figures");
   constexpr std::size_t most = 8'000'000;  // bytes: what mail takes
   const std::size_t document = page.text().size();
   if (input.explorer && document < most) page.explorer(input.explorer(most - document));

@@ -31,7 +31,7 @@ constexpr std::string_view of_data = "data: ";  // begins the name of a fact of 
 void Draw::operator()(Figure figure) const {
   if (figure.name == first_) return;
   figure.name = page_.free_figure_name(figure.name);
-  page_.figure(figure, read_file(write_figure(folder_, figure)));
+  page_.figure(figure);
 }
 
 void Draw::first(const Figure& figure) {

@@ -9,16 +9,15 @@
 
 namespace misfit::report {
 
-/// Draws a figure, under a name that no other one of the page has, and puts it there.
+/// Puts a figure onto the page, under a name that no other one has there.
 class Draw {
  public:
-  Draw(std::filesystem::path folder, Page& page) : folder_(std::move(folder)), page_(page) {}
+  explicit Draw(Page& page) : page_(page) {}
   void operator()(Figure figure) const;
-  /// The same, on the first screen: when its section comes to it, it is not drawn again.
+  /// The same, on the first screen: when its section comes to it, it is not there again.
   void first(const Figure& figure);
 
  private:
-  std::filesystem::path folder_;
   Page& page_;
   std::string first_;
 };

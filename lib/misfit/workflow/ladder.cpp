@@ -54,7 +54,7 @@ Rung rung_of(const Session& session, const FilterWork& work) {
   KStepErrors free_runs = k_step_errors(*work.estimate);
   rung.k_step = std::move(free_runs.rms);
   rung.note = std::move(free_runs.words);
-  if (!rung.validation_rms.empty()) rung.validation_k_step = k_step_errors(*work.estimate, true).rms;
+  if (!rung.validation_rms.empty()) rung.validation_k_step = k_step_errors(*work.estimate, ComparedSamples::held_out).rms;
   rung.trim = work.fit.trim;
   rung.doubts = work.fit.doubts;
   rung.estimates.emplace();

@@ -12,6 +12,7 @@
 #include "misfit/data/estimators.h"
 #include "misfit/inference/curves.h"
 #include "misfit/inference/states.h"
+#include "misfit/model/whole_steps.h"
 #include "misfit/sim/planner.h"
 #include "misfit/sim/random_run.h"
 #include "misfit/workflow/estimate/estimate.h"
@@ -106,9 +107,39 @@ Case from_fit(Session& session) {
   return {prepared.model, prepared.experiments.front(), states.x.row(known - states.ok.begin())};
 }
 
+/// The standard deviation of the noise that an output gets.
+double noise_of(const OutputSpec& output, const Session& session) {
+  if (!session.study.simulate) return 0.0;
+  const auto found = session.study.simulate->noise.find(output.name);
+  return found == session.study.simulate->noise.end() ? 0.0 : in_unit(found->second, output.name, output.unit);
+}
+
+/// An output of the model as it is measured: with noise of `sigma`, and then in whole steps, if it is read in such.
+std::vector<double> measured(const Model& model, int output, const std::vector<double>& values, double sigma, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<double> out;
+  for (const double value : values) out.push_back(as_read(model, output, value + sigma * normal(random)));
+  if (!std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); }))
+    throw RunError("output " + model.system->spec().outputs[output].name + " with noise of sigma " + format_value(sigma) +
+                   " is not finite");
+  return out;
+}
+
+/// A column NAME, and NAME_true beside it where NAME is measured with noise or in steps.
+void add_output(Table& table, const OutputSpec& output, std::vector<double> values, std::vector<double> read) {
+  const std::string unit = display_level_unit(output.unit);
+  const bool as_it_is = read == values;
+  for (std::vector<double>* column : {&values, &read}) {
+    for (double& v : *column) v = convert(v, output.unit, unit);
+  }
+  table.add(output.name, unit, std::move(read));
+  if (!as_it_is) table.add(output.name + "_true", unit, std::move(values));
+}
+
 Table simulate(const Case& c, const Session& session) {
-  Stepper stepper(c.model);
-  InputTable inputs = input_table(c.signals, c.model);
+  const Model before = before_whole_steps(c.model);
+  Stepper stepper(before);
+  InputTable inputs = input_table(c.signals, before);
   std::mt19937_64 random(session.study.seed);
   Segment run;
   if (has_random_states(stepper.evaluator(), c.initial.data(), inputs.at(0), c.signals.t.front())) {
@@ -121,24 +152,10 @@ Table simulate(const Case& c, const Session& session) {
   if (!run.finite) throw RunError("simulation diverged (non-finite state) at t = " + format_value(c.signals.t[run.failed_at]) + " s");
   Table table;
   table.add("t", "s", c.signals.t);
-  for (Eigen::Index o = 0; o < run.y.cols(); ++o) {
+  for (int o = 0; o < c.model.outputs(); ++o) {
     const OutputSpec& output = c.model.system->spec().outputs[o];
-    const std::string unit = display_level_unit(output.unit);
-    std::vector<double> values, noisy;
-    double sigma = 0.0;
-    if (session.study.simulate) {
-      const auto found = session.study.simulate->noise.find(output.name);
-      if (found != session.study.simulate->noise.end()) sigma = in_unit(found->second, output.name, output.unit);
-    }
-    std::normal_distribution<double> normal(0.0, 1.0);
-    for (Eigen::Index i = 0; i < run.y.rows(); ++i) {
-      values.push_back(convert(run.y(i, o), output.unit, unit));
-      noisy.push_back(convert(run.y(i, o) + sigma * normal(random), output.unit, unit));
-    }
-    if (!std::all_of(noisy.begin(), noisy.end(), [](double v) { return std::isfinite(v); }))
-      throw RunError("output " + output.name + " with noise of sigma " + format_value(sigma) + " is not finite");
-    if (sigma > 0.0) table.add(output.name, unit, noisy);
-    table.add(sigma > 0.0 ? output.name + "_true" : output.name, unit, values);
+    const std::vector<double> values(run.y.col(o).begin(), run.y.col(o).end());
+    add_output(table, output, values, measured(c.model, o, values, noise_of(output, session), random));
   }
   return table;
 }

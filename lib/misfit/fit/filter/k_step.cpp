@@ -20,8 +20,14 @@ constexpr std::size_t lengths = std::size(kLadderSteps);
 struct Errors {
   std::vector<std::vector<double>> squares, counts;
   std::vector<std::size_t> runs = std::vector<std::size_t>(lengths, 0), diverged = runs;
-  SampleRole counted;  ///< which measurements are compared
-  Errors(std::size_t channels, SampleRole role) : squares(channels, std::vector<double>(lengths, 0.0)), counts(squares), counted(role) {}
+  ComparedSamples compared;
+  Errors(std::size_t channels, ComparedSamples which)
+      : squares(channels, std::vector<double>(lengths, 0.0)), counts(squares), compared(which) {}
+
+  [[nodiscard]] bool has(SampleRole role) const {
+    return (role == SampleRole::counted && compared != ComparedSamples::held_out) ||
+           (role == SampleRole::validation && compared != ComparedSamples::counted);
+  }
 };
 
 /// Free runs of one experiment: from the filtered state of every third sample (neighbours say the same) as far as the longest length,
@@ -58,7 +64,7 @@ class FreeRuns {
     std::array<double, kMaxSensorPorts> y{};
     if (!predict_at({stepper_, signals_, data_.inputs}, k, x, y.data())) return false;
     for (std::size_t o = 0; o < errors_.squares.size(); ++o) {
-      if (data_.use[k * errors_.squares.size() + o] != errors_.counted) continue;
+      if (!errors_.has(data_.use[k * errors_.squares.size() + o])) continue;
       errors_.squares[o][length] += std::pow(signals_.measured[o].values[k] - y[o], 2);
       errors_.counts[o][length] += 1.0;
     }
@@ -93,11 +99,11 @@ std::string words_on(const Errors& errors) {
 
 }  // namespace
 
-KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation) {
+KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compared) {
   const auto& outputs = estimate.model.system->spec().outputs;
   const Model fixed = all_fixed(estimate.forced.model);
   Stepper stepper(fixed);
-  Errors errors(outputs.size(), validation ? SampleRole::validation : SampleRole::counted);
+  Errors errors(outputs.size(), compared);
   for (std::size_t e = 0; e < estimate.data.size(); ++e) FreeRuns(stepper, estimate.data[e], estimate.traces[e], errors).run();
   KStepErrors out;
   for (std::size_t o = 0; o < outputs.size(); ++o) {

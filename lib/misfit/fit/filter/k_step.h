@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,10 +16,13 @@ struct KStepErrors {
   std::string words;                               ///< on the runs that diverge; empty: none does
 };
 
-/// RMS of predictions 1, 2, 4, … samples ahead per channel over the counted samples: the filtered state run on without further
+/// Which measurements predictions are compared with.
+enum class ComparedSamples : std::uint8_t { counted, held_out, both };
+
+/// RMS of predictions 1, 2, 4, … samples ahead per channel over the compared samples: the filtered state run on without further
 /// measurements, from where it is settled (settled.h). A run that diverges has no error to count. Where more than 3 % do, what is left says
 /// how good the good ones are: no RMS is given.
-[[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, bool validation = false);
+[[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compared = ComparedSamples::counted);
 
 /// How the errors of the longest predictions that both models have changed: RMS over the channels of (after/before). Infinite where those
 /// after diverge and those before do not; 1 where nothing can be compared.

@@ -11,6 +11,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/inference/states.h"
 #include "misfit/math/whiteness.h"
+#include "misfit/model/whole_steps.h"
 #include "misfit/workflow/assess/assess.h"
 
 namespace misfit {
@@ -167,12 +168,10 @@ Experiment experiment_of(const FilterWork& work, const FilterData& data) {
   return e;
 }
 
-/// Channels as they are read: in whole steps, where they are; from which level these are counted makes no difference to a motion.
-void round_to_steps(const FilterModel& model, Signals& made) {
-  for (std::size_t o = 0; o < model.steps.size(); ++o) {
-    const double step = model.steps[o];
-    if (!(step > 0.0)) continue;
-    for (double& y : made.measured[o].values) y = step * std::round(y / step);
+/// Channels as they are read: in whole steps, where they are.
+void read(const Model& model, Signals& made) {
+  for (std::size_t o = 0; o < made.measured.size(); ++o) {
+    for (double& y : made.measured[o].values) y = as_read(model, static_cast<int>(o), y);
   }
 }
 
@@ -181,7 +180,7 @@ std::vector<MotionNumbers> simulated_numbers(const FilterWork& work, const Stoch
   std::vector<MotionNumbers> out;
   std::optional<Signals> made = noisy_run(model, e.measured, e.start, seed);
   if (!made) return out;
-  round_to_steps(work.estimate->forced, *made);
+  read(work.estimate->model, *made);
   const std::vector<MotionPath> paths = paths_of(work.estimate->model, *made);
   for (std::size_t p = 0; p < paths.size(); ++p) out.push_back(motion_numbers(at_own_rows(paths[p], e.own[p]), e.scales[p]));
   return out;

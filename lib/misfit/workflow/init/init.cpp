@@ -27,15 +27,16 @@ double length_of_zoom(const GuessedModel& model, double step) {
 
 void draw(const RecordingSurvey& survey, const GuessedModel& model, const std::vector<std::string>& names, const fs::path& folder) {
   const double zoom = length_of_zoom(model, survey.step);
+  std::vector<report::Figure> figures;
   for (std::size_t i = 0; i < survey.parts.size(); ++i) {
     const Table& part = survey.parts[i];
     const std::vector<double>& t = part.columns.front().values;
-    write_figure(folder / "figures", report::recording_figure(survey, i, names[i], std::nullopt));
+    figures.push_back(report::recording_figure(survey, i, names[i], std::nullopt));
     constexpr double long_record = 2.5;
     if (t.back() - t.front() < long_record * zoom) continue;
-    write_figure(folder / "figures",
-                 report::recording_figure(survey, i, names[i], report::typical_interval(t, part.columns.back().values, zoom)));
+    figures.push_back(report::recording_figure(survey, i, names[i], report::typical_interval(t, part.columns.back().values, zoom)));
   }
+  static_cast<void>(report::write_figures(folder / "figures", figures));
 }
 
 }  // namespace
