@@ -74,9 +74,9 @@ class NoPath {
   std::string before_;
 };
 
-/// What is drawn: gnuplot names its drawings and their parts otherwise than write_figure() does.
+/// What is drawn: gnuplot names its drawings and their parts otherwise than write_figure() does, and begins with an empty group.
 std::string without_titles(const std::string& svg) {
-  static const std::regex titles("<title>[^<]*</title>|<desc>[^<]*</desc>");
+  static const std::regex titles("<title>[^<]*</title>|<desc>[^<]*</desc>|<g fill=\"none\" color=\"#FFFFFF\"[^>]*>\n</g>\n");
   return std::regex_replace(svg, titles, "");
 }
 

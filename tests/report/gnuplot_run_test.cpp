@@ -125,12 +125,12 @@ TEST(GnuplotDrawing, ThatCannotBeWrittenIsToldFromOneThatCannotBeDrawn) {
   EXPECT_EQ(message.find("gnuplot failed"), std::string::npos);
 }
 
-/// Settings, variables, functions and panels of one script reach no other, whatever it ends with.
+/// Settings, variables, functions and panels of one script reach no other, whatever it ends with; options of its terminal do.
 TEST(FiguresTogether, AreDrawnAsEachAlone) {
   const TemporaryFolder alone, together;
   const std::string expected = drawn(alone.path());
   const DrawingWords words{"A title", "What it shows"};
-  const std::string plain = "set terminal svg\nset output out\nplot sin(x)\nset output\ndrawn = 1\n";
+  const std::string plain = "set terminal svg background 'white'\nset output out\nplot sin(x)\nset output\ndrawn = 1\n";
   alone.write("plain.gp", plain);
   together.write("plain.gp", plain);
   together.write("first.gp",

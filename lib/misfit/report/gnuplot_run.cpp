@@ -118,9 +118,10 @@ std::string shown(std::string words) {
 
 /// Without the empty group that a drawing begins with: its colour is the last one of the drawing before.
 std::string without_first_group(std::string svg) {
-  constexpr std::string_view begin = "\n<g ", empty = ">\n</g>\n";
-  const std::size_t at = svg.find(begin), end = at == std::string::npos ? at : svg.find('>', at);
-  if (end != std::string::npos && std::string_view(svg).substr(end).starts_with(empty)) svg.erase(at + 1, end + empty.size() - at - 1);
+  constexpr std::string_view before = "</defs>\n", empty = ">\n</g>\n";
+  const std::size_t definitions = svg.find(before), at = definitions == std::string::npos ? definitions : definitions + before.size();
+  const std::size_t end = at == std::string::npos ? at : svg.find('>', at);
+  if (end != std::string::npos && std::string_view(svg).substr(end).starts_with(empty)) svg.erase(at, end + empty.size() - at);
   return svg;
 }
 
@@ -150,8 +151,8 @@ std::vector<std::string> run_once(const fs::path& program, const fs::path& dir, 
     const IgnoreBrokenPipe guard;
     std::string commands;
     for (std::size_t k = 0; k < orders.size(); ++k) {
-      commands += fmt::format("reset session\nprint '{}'\nout = '{}'\nload '{}.gp'\n", shown(begin_of(k)),
-                              drawings.emplace_back("drawing").path(), orders[k].name);
+      commands += fmt::format("reset session\nunset minussign\nset encoding default\nprint '{}'\nout = '{}'\nload '{}.gp'\n",
+                              shown(begin_of(k)), drawings.emplace_back("drawing").path(), orders[k].name);
       commands += fmt::format("unset multiplot\nunset output\nif (exists('drawn')) print '{}'\n", all_drawn);
     }
     Gnuplot gnuplot(fmt::format("cd -- {} && {} {} -d >{} 2>&1 || true", shell_quoted(fs::absolute(dir).string()), environment,
