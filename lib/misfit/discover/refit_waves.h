@@ -26,13 +26,13 @@ class RefitWaves {
   void refit_where_steps_are_coarse();
   /// Of such an output.
   [[nodiscard]] bool reads_coarse_steps(const RankedCandidate& e) const;
-  /// Those with a predicted drop above half of the best; under mpirun, where no rank knows what another accepts, all that are significant.
+  /// Those with a predicted drop above half of the best.
   void refit_the_best();
   /// One step of a time constant, a threshold or a width tells little of what it explains at its maximum, nor one of a sign that a sensor
   /// loses, or not: a tenth of what another one explains, there.
   void refit_the_significant_beyond_a_step();
   /// The forces that explain most of the free run, each at least a fifth of it, begun from there: down to the first that one step ahead has
-  /// found already (under mpirun all of them, as in refit_the_best()).
+  /// found already.
   void refit_what_the_free_run_shows();
   /// A refit that ends far below what the score promised, or nowhere, has failed: that is no evidence against its effect. What else is
   /// free in the estimate may be where it is to make up for the missing effect. Not of those that promise less than half of what another
@@ -52,7 +52,7 @@ class RefitWaves {
   bool refit_afresh();
   void refit_alone(const RankedCandidate& candidate);
 
-  /// higher_without(), from the refits from which it was not looked for yet; not under mpirun.
+  /// higher_without(), from the refits from which it was not looked for yet.
   [[nodiscard]] std::optional<FilterEstimate> higher();
   /// Effects whose refits were cut off.
   [[nodiscard]] const std::vector<std::string>& unfinished() const { return unfinished_; }
