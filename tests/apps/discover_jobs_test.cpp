@@ -2,6 +2,7 @@
 
 #include "tests/apps/on_ranks.h"
 #include "tests/apps/oscillator_study.h"
+#include "tests/apps/short_flight.h"  // killed_at()
 
 namespace {
 

@@ -58,8 +58,8 @@ starts = 5
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
 
-  /// Records it anew with another force in place of dry friction, a function of its rate [m/s].
-  void record_with(double (*force)(double)) const { write("d.csv", recording(force)); }
+  /// Records it anew, half as long again, with another force in place of dry friction, a function of its rate [m/s].
+  void record_with(double (*force)(double)) const { write("d.csv", recording(force, 600)); }
 
   /// Its position is measured by two sensors: an effect of a sensor has two places.
   void measure_twice() const {
@@ -88,11 +88,11 @@ starts = 5
  private:
   static double dry_friction(double w) { return -0.5 * std::tanh(w / 0.02); }
 
-  static std::string recording(double (*force)(double) = dry_friction) {
+  static std::string recording(double (*force)(double) = dry_friction, int samples = 400) {
     std::string text = "t[s],u[N],y[m]\n";
     std::mt19937 random(3);
     std::normal_distribution<double> noise(0.0, 0.005);
-    constexpr int samples = 400, steps = 40;
+    constexpr int steps = 40;
     constexpr double dt = 0.05, h = dt / steps;
     double y = 0.5, w = 0.0;
     for (int i = 0; i < samples; ++i) {

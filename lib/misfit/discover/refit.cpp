@@ -101,10 +101,9 @@ double drop_of(const FilterEstimate& with, const FilterEstimate& without, const 
          (with.objective + still_to_gain(with) - without.objective - still_to_gain(without) - prior_of_off(*screening.candidate_model));
 }
 
-/// With an effect of whole steps, and measurements that are in them: held as a whole from the beginning, since no part of it is a way
-/// there. nullopt: it is another effect, or they are not.
-std::optional<Model> model_in_whole_steps(const RefitWork& work, const ScreeningResult& screening) {
-  Model model = start_model(work.without, screening, work.registry);
+/// A start with an effect of whole steps, and measurements that are in them: held as a whole from the beginning, since no part of it is a
+/// way there. nullopt: it is another effect, or they are not.
+std::optional<Model> in_whole_steps(Model model, const RefitWork& work, const ScreeningResult& screening) {
   if (!on_whole_steps(model, work.experiments)) return std::nullopt;
   for (int strength : screening.candidate_model->strengths) {
     model.parameters[strength].value = 1.0;
@@ -292,8 +291,10 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
     estimate_from_all({{start, penalties_as_of(without, start)}}, noise);
   };
   const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
-  if (const auto in_steps = model_in_whole_steps(work, screening)) {
-    estimate_from(*in_steps, work.afresh ? std::nullopt : std::optional(without.noise));
+  if (const auto in_steps = in_whole_steps(start_model(without, screening, work.registry), work, screening)) {
+    if (!work.afresh) estimate_from(*in_steps, without.noise);
+    // Without the steps the estimate may be far off, with a random force that makes up for them.
+    if (const auto fresh = in_whole_steps(fresh_model(work, screening), work, screening)) estimate_from(*fresh, std::nullopt);
   } else if (work.afresh) {
     estimate_from(fresh_model(work, screening), std::nullopt);
   } else {

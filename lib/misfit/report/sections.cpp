@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "misfit/core/files.h"
 #include "misfit/report/figures.h"
 #include "misfit/report/figures_intervals.h"
 #include "misfit/report/figures_simulated.h"
