@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "misfit/core/display.h"
 #include "misfit/core/error.h"
@@ -99,6 +100,14 @@ void note_changes(const ScreeningResult& screening, const Registry& registry, Re
 double drop_of(const FilterEstimate& with, const FilterEstimate& without, const ScreeningResult& screening) {
   return 2.0 *
          (with.objective + still_to_gain(with) - without.objective - still_to_gain(without) - prior_of_off(*screening.candidate_model));
+}
+
+/// A refit that is done, with what is said of it.
+Refit with_what_is_said(const RefitWork& work, const ScreeningResult& screening, Refit out) {
+  note_changes(screening, work.registry, out);
+  out.drop = drop_of(out.estimate, work.without, screening);
+  out.parameters = parameters_of_effect(out.estimate, screening);
+  return out;
 }
 
 /// A start with an effect of whole steps, and measurements that are in them: held as a whole from the beginning, since no part of it is a
@@ -317,10 +326,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   note_half_a_sample(out);
   note_output_as_late(out);
   if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
-  note_changes(screening, work.registry, out);
-  out.drop = drop_of(out.estimate, without, screening);
-  out.parameters = parameters_of_effect(out.estimate, screening);
-  return out;
+  return with_what_is_said(work, screening, std::move(out));
 }
 
 int estimated_parameters(const Refit& refit) {
