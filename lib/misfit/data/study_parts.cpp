@@ -193,10 +193,14 @@ void read_initial(const Section& root, Study& study) {
 
 namespace {
 
-/// Any key but those of every effect is a role, which is a text; what is none and looks like one of those keys is mistyped.
+/// Of every effect: any other key is a role, which is a text; what is none and looks like one of these is mistyped.
+const std::vector<std::string>& keys_of_effects() {
+  static const std::vector<std::string> keys = {"kind", "formula", "start", "free", "fixed"};
+  return keys;
+}
+
 std::string read_role(const DescribedSection& section, const std::string& key) {
-  const std::vector<std::string> keys = {"kind", "formula", "start", "free", "fixed"};
-  if (!section.is_text(key) && !nearest_name(key, keys).empty()) section.fail_unknown(key, keys);
+  if (!section.is_text(key) && !nearest_name(key, keys_of_effects()).empty()) section.fail_unknown(key, keys_of_effects());
   return section.text(key).value_or("");
 }
 
@@ -206,9 +210,10 @@ EffectStudy read_effect(const DescribedSection& section, const std::string& name
   effect.name = name;
   if (section.has("formula")) effect.declared = read_formula(section);
   effect.kind = effect.declared ? name : section.text("kind").value_or(name);
-  for (const std::string& role : section.keys()) {
-    if (!effect.declared && role != "kind" && role != "start" && role != "free" && role != "fixed")
-      effect.roles[role] = read_role(section, role);
+  for (const std::string& key : section.keys()) {
+    const std::vector<std::string>& others = keys_of_effects();
+    const bool is_role = !effect.declared && std::find(others.begin(), others.end(), key) == others.end();
+    if (is_role) effect.roles[key] = read_role(section, key);
   }
   if (section.has("start")) {
     const DescribedSection start = described(section, "start", "effects.NAME.start");

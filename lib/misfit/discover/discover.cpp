@@ -133,10 +133,7 @@ class Search {
   SearchContext context() const { return {estimate_, registry_, experiments_, options_, families_}; }
   RefitWork refit_work() const { return work_from(estimate_, context()); }
 
-  /// Every rank comes to the refits, which are shared: none is stopped before.
   void screen_all() {
-    std::optional<SuspendedTimeLimit> all_ranks;
-    if (ranks_started() > 1) all_ranks.emplace();
     screening_ = screen(scores(), candidates_.models, part(0.0, end_of_screen));
     unknown_ = unknown_curves(scores(), part(end_of_screen, end_of_curves));
     narrow_ = narrow_curves(scores());
@@ -258,7 +255,8 @@ Discovery whole_search(const FittedStudy& fitted, const DiscoverOptions& options
 Discovery discover(const FittedStudy& fitted, const DiscoverOptions& options) {
   const Stopwatch clock;
   const bool whole = options.only.empty();
-  const Watch watch("this round of discover", whole ? options.round_limit : 0.0);
+  // Ranks share the refits of every wave: one that stopped alone would leave the others waiting.
+  const Watch watch("this round of discover", whole && ranks_started() == 1 ? options.round_limit : 0.0);
   Discovery out;
   try {
     out = whole ? whole_search(fitted, options) : Search(fitted, options).predict();

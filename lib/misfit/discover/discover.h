@@ -37,7 +37,7 @@ struct DiscoverOptions {
   std::optional<StoredJobs> refits = std::nullopt;
   const std::atomic<bool>* stop = nullptr;  ///< between refits
   double refit_limit = 0.0;                 ///< time limit of each refit [s]; 0: none
-  double round_limit = 0.0;                 ///< of the whole search [s]; 0: none
+  double round_limit = 0.0;                 ///< of the whole search [s]; 0: none; under mpirun there is none
 };
 
 /// Ranks what the model could lack (lib/misfit/README.md, 6.3 to 6.5): score tests of every effect in the registry that suits the system
