@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "misfit/core/lists.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/scalar.h"
 
 namespace misfit {
@@ -81,9 +82,9 @@ void add_covariance(SweepFit& fit, const Eigen::MatrixXd& J) {
   const Eigen::VectorXd length = J.colwise().norm();
   if (J.rows() <= J.cols() || !(length.minCoeff() > 1e-12 * length.maxCoeff())) return;
   const Eigen::MatrixXd scaled = J * length.cwiseInverse().asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
-  if (!(svd.singularValues().minCoeff() > min_singular_value)) return;
-  const Eigen::MatrixXd half = length.cwiseInverse().asDiagonal() * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  const RightSingular svd = right_singular(scaled);
+  if (!(svd.values.minCoeff() > min_singular_value)) return;
+  const Eigen::MatrixXd half = length.cwiseInverse().asDiagonal() * svd.vectors * svd.values.cwiseInverse().asDiagonal();
   fit.covariance = fit.sigma_px * fit.sigma_px * half * half.transpose();
   fit.determined = true;
 }

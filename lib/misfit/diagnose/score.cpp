@@ -7,6 +7,7 @@
 
 #include "misfit/core/lists.h"
 #include "misfit/core/watch.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/model/effect.h"
 
 namespace misfit {
@@ -119,10 +120,10 @@ Combinations seen(const Combinations& all) {
 Combinations undescribed(const Combinations& all, const Eigen::MatrixXd& unadjusted, double least_share) {
   if (!(least_share > 0.0) || all.values.size() == 0) return all;
   const Eigen::MatrixXd without = all.vectors.transpose() * unadjusted * all.vectors;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> shares(Eigen::MatrixXd(all.values.asDiagonal()), without);
-  if (shares.info() != Eigen::Success) return all;
-  const Eigen::Index first = (shares.eigenvalues().array() < least_share).count(), kept = all.values.size() - first;
-  return {all.vectors * shares.eigenvectors().rightCols(kept), shares.eigenvalues().tail(kept)};
+  const SymmetricEigen shares = symmetric_eigen(all.values.asDiagonal(), without);
+  if (!shares.converged) return all;
+  const Eigen::Index first = (shares.values.array() < least_share).count(), kept = all.values.size() - first;
+  return {all.vectors * shares.vectors.rightCols(kept), shares.values.tail(kept)};
 }
 
 /// sᵀ V⁻¹ s with amplitudes V⁻¹ s over the given columns, in the eigenvectors of the correlation matrix whose eigenvalue is not rounding;
@@ -132,9 +133,9 @@ void solve_score(const Eigen::MatrixXd& V, const Eigen::MatrixXd& unadjusted, co
   const Eigen::MatrixXd A = V(columns, columns);
   const Eigen::VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * A * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  const SymmetricEigen eigen = symmetric_eigen(correlation);
   const Eigen::VectorXd scaled = scale.asDiagonal() * Eigen::VectorXd(s(columns));
-  const Combinations all{eigen.eigenvectors(), eigen.eigenvalues()};
+  const Combinations all{eigen.vectors, eigen.values};
   const Eigen::VectorXd rotated = all.vectors.transpose() * scaled;
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     constexpr double min_eigenvalue = 1e-6;  // below, columns are linearly dependent

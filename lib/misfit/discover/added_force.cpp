@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "misfit/math/decompositions.h"
+
 namespace misfit {
 namespace {
 
@@ -32,7 +34,7 @@ class WithAndWithout {
     without_.rates(at.x, at.u, at.t, dx_without_.data());
     Eigen::MatrixXd by_force(states_, std::ssize(forced_.force_states));
     for (Eigen::Index p = 0; p < by_force.cols(); ++p) by_force.col(p) = D_.col(forced_.force_states[p]).head(states_);
-    return by_force.colPivHouseholderQr().solve((dx_ - dx_without_).head(states_));
+    return least_squares(by_force, (dx_ - dx_without_).head(states_));
   }
 
  private:

@@ -10,6 +10,7 @@
 #include "misfit/core/text.h"
 #include "misfit/discover/candidate_model.h"
 #include "misfit/inference/standard_error.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
 #include "misfit/model/memory.h"
@@ -40,7 +41,7 @@ std::vector<double> real_time_constants(const Model& model, const FilterEstimate
   const Eigen::MatrixXd A = linearised_system(model, estimate);
   if (!A.allFinite()) return {};
   std::vector<double> out;
-  const Eigen::VectorXcd poles = Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues();
+  const Eigen::VectorXcd poles = eigenvalues(A);
   for (const std::complex<double>& pole : poles) {
     constexpr double rounding = 1e-9;  // of the pole
     if (std::abs(pole.imag()) <= rounding * std::abs(pole) && pole.real() < 0.0) out.push_back(-1.0 / pole.real());

@@ -7,6 +7,7 @@
 #include "misfit/core/lists.h"
 #include "misfit/core/text.h"
 #include "misfit/diagnose/features.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/registry.h"
 
@@ -49,7 +50,7 @@ Eigen::VectorXd independence(const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd unit = normalised(columns);
   Eigen::MatrixXd products = unit.transpose() * unit;
   products.diagonal().array() += rounding;
-  const Eigen::MatrixXd inverse = products.ldlt().solve(Eigen::MatrixXd::Identity(products.rows(), products.cols()));
+  const Eigen::MatrixXd inverse = symmetric_inverse(products);
   return inverse.diagonal().cwiseInverse().cwiseMin(1.0);
 }
 

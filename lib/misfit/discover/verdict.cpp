@@ -12,6 +12,7 @@
 #include "misfit/discover/operating_range.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/inference/states.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/model/evaluator.h"
 #include "misfit/model/memory.h"
 #include "misfit/model/whole_steps.h"
@@ -109,7 +110,8 @@ Eigen::MatrixXd given_the_rest(const Model& model, const Eigen::MatrixXd& covari
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
   const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd between = correlation(own, rest);
-  const Eigen::MatrixXd left = correlation(own, own) - between * correlation(rest, rest).ldlt().solve(between.transpose());
+  const Eigen::MatrixXd left =
+      correlation(own, own) - between * symmetric_solve(correlation(rest, rest), Eigen::MatrixXd(between.transpose()));
   out(own, own) = sigma(own).asDiagonal() * left * sigma(own).asDiagonal();
   return out;
 }

@@ -1,4 +1,3 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +7,7 @@
 #include "misfit/inference/identifiable.h"
 #include "misfit/inference/prior.h"
 #include "misfit/math/covariance.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -88,13 +88,13 @@ void report_collinear(std::vector<Direction> all, const Eigen::MatrixXd& covaria
   const Eigen::MatrixXd joint = weights * covariance * weights.transpose();
   const Eigen::VectorXd sigma = joint.diagonal().cwiseSqrt();
   const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * joint * sigma.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
-  if (solver.info() != Eigen::Success) return;
+  const SymmetricEigen eigen = symmetric_eigen(correlation);
+  if (!eigen.converged) return;
   for (Eigen::Index i = 0; i < n; ++i) all[i].sigma = sigma[i];
   constexpr double collinear = 0.02, min_share = 0.25;  // eigenvalue of the correlation matrix; of the largest entry of its vector
   constexpr double min_relative_sigma = 0.05;
-  for (Eigen::Index k = 0; k < n && solver.eigenvalues()[k] < collinear; ++k) {
-    const Eigen::VectorXd v = solver.eigenvectors().col(k);
+  for (Eigen::Index k = 0; k < n && eigen.values[k] < collinear; ++k) {
+    const Eigen::VectorXd v = eigen.vectors.col(k);
     std::vector<std::string> names;
     std::vector<double> relative;
     std::vector<Eigen::Index> places;

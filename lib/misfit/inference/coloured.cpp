@@ -1,6 +1,5 @@
 #include "misfit/inference/coloured.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,6 +8,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/inference/own_clocks.h"
 #include "misfit/inference/short_record.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/spectrum.h"
 #include "misfit/math/whiteness.h"
 
@@ -305,12 +305,11 @@ bool residuals_are_white(const std::vector<ResidualRows>& experiments, Eigen::In
 }
 
 ColouredCovariance widening_only(ColouredCovariance covariance, const Eigen::MatrixXd& plain) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(plain);
-  if (factor.info() != Eigen::Success) return covariance;
-  const Eigen::MatrixXd L = factor.matrixL();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(L.transpose() * covariance.excess * L);
-  const Eigen::MatrixXd back = L.transpose().triangularView<Eigen::Upper>().solve(eigen.eigenvectors());
-  covariance.excess = back * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * back.transpose();
+  const std::optional<Eigen::MatrixXd> L = cholesky(plain);
+  if (!L) return covariance;
+  const SymmetricEigen eigen = symmetric_eigen(L->transpose() * covariance.excess * *L);
+  const Eigen::MatrixXd back = L->transpose().triangularView<Eigen::Upper>().solve(eigen.vectors);
+  covariance.excess = back * eigen.values.cwiseMax(0.0).asDiagonal() * back.transpose();
   covariance.covariance = plain + plain * covariance.excess * plain;
   return covariance;
 }

@@ -1,11 +1,11 @@
 #include "misfit/inference/identifiable.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "misfit/core/text.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -88,9 +88,9 @@ std::string undetermined(const Model& model, const NormalEquations& problem) {
   if (columns.size() < 2) return {};
   const Eigen::VectorXd scale = information.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd N = reduced(problem, scale, columns, model.free_parameters().size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(N);
-  if (solver.info() != Eigen::Success || solver.eigenvalues()[0] > singular_eigenvalue * solver.eigenvalues().maxCoeff()) return {};
-  const Eigen::VectorXd direction = solver.eigenvectors().col(0);
+  const SymmetricEigen eigen = symmetric_eigen(N);
+  if (!eigen.converged || eigen.values[0] > singular_eigenvalue * eigen.values.maxCoeff()) return {};
+  const Eigen::VectorXd direction = eigen.vectors.col(0);
   constexpr double min_share = 0.1;
   std::vector<std::string> names;
   std::vector<double> relative;
@@ -107,12 +107,11 @@ std::string undetermined_starts(const Model& model, const Eigen::MatrixXd& preci
   constexpr double least_share = 0.01;  // of the unit length of an eigenvector, squared
   const Eigen::Index columns = std::ssize(model.free_parameters()), n = model.states();
   const Eigen::VectorXd scale = precision.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(scale.asDiagonal() * precision * scale.asDiagonal()));
-  if (solver.info() != Eigen::Success) return {};
+  const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * precision * scale.asDiagonal());
+  if (!eigen.converged) return {};
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(precision.rows());
   for (Eigen::Index k = 0; k < shares.size(); ++k) {
-    if (solver.eigenvalues()[k] <= singular_eigenvalue * solver.eigenvalues().maxCoeff())
-      shares += solver.eigenvectors().col(k).cwiseAbs2();
+    if (eigen.values[k] <= singular_eigenvalue * eigen.values.maxCoeff()) shares += eigen.vectors.col(k).cwiseAbs2();
   }
   std::vector<std::string> names;
   bool of_effects = true;

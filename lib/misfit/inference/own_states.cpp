@@ -1,11 +1,10 @@
 #include "misfit/inference/own_states.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <unsupported/Eigen/MatrixFunctions>
 
+#include "misfit/math/decompositions.h"
 #include "misfit/model/evaluator.h"
 #include "misfit/model/memory.h"
 #include "misfit/sim/trajectory.h"
@@ -135,7 +134,7 @@ class Along {
     Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(block.size + 1, block.size + 1);
     augmented.topLeftCorner(block.size, block.size) = h * derivatives().block(block.first, block.first, block.size, block.size);
     augmented.topRightCorner(block.size, 1) = h * Eigen::Map<const Eigen::VectorXd>(dx_.data() + block.first, block.size);
-    return Eigen::MatrixXd(augmented.exp()).topRightCorner(block.size, 1);
+    return exponential(augmented).topRightCorner(block.size, 1);
   }
 
   void set_system_states(Eigen::Index sample) {
@@ -149,11 +148,12 @@ class Along {
     const Eigen::MatrixXd A = rows.block(memory.first, memory.first, size, size);
     if (sample == first_) memory.A = A;
     if (!((A - memory.A).norm() <= constant * memory.A.norm())) return false;
-    const Eigen::FullPivLU<Eigen::MatrixXd> inverse(A);
-    if (!(inverse.rcond() > singular)) return false;
-    if (sample == first_) memory.rest_by_state = -inverse.solve(Eigen::MatrixXd(rows.block(memory.first, 0, size, model_.system_states())));
-    const Eigen::Map<const Eigen::VectorXd> drift(dx_.data() + memory.first, size);
-    memory.rest.row(sample) = (at_.segment(memory.first, size) - inverse.solve(drift)).transpose();
+    Eigen::MatrixXd known(size, 1 + model_.system_states());  // drift, and its derivatives by the states of the system
+    known << Eigen::Map<const Eigen::VectorXd>(dx_.data() + memory.first, size), rows.block(memory.first, 0, size, model_.system_states());
+    const std::optional<Eigen::MatrixXd> solved = solve(A, known, singular);
+    if (!solved) return false;
+    if (sample == first_) memory.rest_by_state = -solved->rightCols(model_.system_states());
+    memory.rest.row(sample) = (at_.segment(memory.first, size) - solved->col(0)).transpose();
     return memory.rest.row(sample).allFinite();
   }
 
@@ -175,7 +175,7 @@ RowMatrix departures(const Memory& memory, const Recording& recording, const Eig
   const ReconstructedStates& states = recording.states;
   const Eigen::Index size = memory.A.rows();
   RowMatrix d = RowMatrix::Zero(memory.rest.rows(), size);
-  const Eigen::MatrixXd inverse = memory.A.inverse();
+  const Eigen::MatrixXd inverse_of_A = inverse(memory.A);
   Eigen::MatrixXd carried;
   double step = -1.0;
   const Eigen::Index first = first_known(states);
@@ -183,16 +183,16 @@ RowMatrix departures(const Memory& memory, const Recording& recording, const Eig
   for (Eigen::Index i = first; i + 1 < d.rows(); ++i) {
     if (!states.ok[i] || !states.ok[i + 1]) continue;
     const double h = recording.signals.t[i + 1] - recording.signals.t[i];
-    if (std::abs(h - step) > 1e-9 * h) carried = (memory.A * h).exp(), step = h;
+    if (std::abs(h - step) > 1e-9 * h) carried = exponential(memory.A * h), step = h;
     const Eigen::VectorXd rate = (memory.rest.row(i + 1) - memory.rest.row(i)).transpose() / h;
-    d.row(i + 1) = (carried * d.row(i).transpose() - inverse * (carried * rate - rate)).transpose();
+    d.row(i + 1) = (carried * d.row(i).transpose() - inverse_of_A * (carried * rate - rate)).transpose();
   }
   return d;
 }
 
 /// Samples that do not remember how the memory was begun.
 std::vector<Eigen::Index> settled(const Memory& memory, const Signals& signals, const ReconstructedStates& states) {
-  const Eigen::VectorXcd poles = memory.A.eigenvalues();
+  const Eigen::VectorXcd poles = eigenvalues(memory.A);
   const double slowest = -poles.real().maxCoeff();
   const Eigen::Index first = first_known(states);
   const double length = signals.t.back() - signals.t[first];
@@ -237,9 +237,9 @@ std::optional<Eigen::MatrixXd> regression(const Eigen::MatrixXd& known, const Ro
   if (known.rows() < samples_per_coefficient * known.cols()) return std::nullopt;
   Eigen::VectorXd scale = known.colwise().norm();
   for (double& s : scale) s = s > 0.0 ? s : 1.0;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(known * scale.cwiseInverse().asDiagonal());
-  qr.setThreshold(1e-6);
-  const Eigen::MatrixXd out = scale.cwiseInverse().asDiagonal() * qr.solve(Eigen::MatrixXd(values));
+  constexpr double dependent = 1e-6;
+  const Eigen::MatrixXd scaled = least_squares(known * scale.cwiseInverse().asDiagonal(), values, dependent);
+  const Eigen::MatrixXd out = scale.cwiseInverse().asDiagonal() * scaled;
   return out.allFinite() ? std::optional<Eigen::MatrixXd>(out) : std::nullopt;
 }
 

@@ -1,8 +1,9 @@
 #include "misfit/inference/prior.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 ColumnPriors parameter_priors(const Model& model) {
@@ -99,14 +100,15 @@ ColumnPriors regularised_priors_about(const Eigen::VectorXd& at, const Model& mo
   GaussianPrior{out, penalties}.add_precision(all);
   const Eigen::VectorXd scale = all.diagonal().cwiseSqrt();  // all = scale C scale; sqrt(C) scale theta has unit variances
   const Eigen::VectorXd inverse = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> correlation(inverse.asDiagonal() * all * inverse.asDiagonal());
-  if (!(correlation.eigenvalues().minCoeff() > 0.0)) return out;
-  const Eigen::MatrixXd root = correlation.operatorSqrt(), inverse_root = correlation.operatorInverseSqrt();
+  const SymmetricEigen correlation = symmetric_eigen(inverse.asDiagonal() * all * inverse.asDiagonal());
+  if (!(correlation.values.minCoeff() > 0.0)) return out;
+  const Eigen::VectorXd roots = correlation.values.cwiseSqrt();
+  const Eigen::MatrixXd root = correlation.with(roots), inverse_root = correlation.with(roots.cwiseInverse());
   const Eigen::VectorXd share = wide.cwiseProduct(inverse.cwiseAbs2());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(inverse_root * share.asDiagonal() * inverse_root);
-  const Eigen::VectorXd kept = (known.eigenvalues().array() < mostly).cast<double>();
-  const Eigen::VectorXd rotated = known.eigenvectors().transpose() * (root * scale.cwiseProduct(at));
-  const Eigen::VectorXd about = (inverse_root * (known.eigenvectors() * kept.cwiseProduct(rotated))).cwiseProduct(inverse);
+  const SymmetricEigen known = symmetric_eigen(inverse_root * share.asDiagonal() * inverse_root);
+  const Eigen::VectorXd kept = (known.values.array() < mostly).cast<double>();
+  const Eigen::VectorXd rotated = known.vectors.transpose() * (root * scale.cwiseProduct(at));
+  const Eigen::VectorXd about = (inverse_root * (known.vectors * kept.cwiseProduct(rotated))).cwiseProduct(inverse);
   out.mean = (stated.array() > 0.0).select(out.mean, about);
   return out;
 }
@@ -144,9 +146,9 @@ Model with_roughness(Model model, const std::vector<Penalty>& penalties) {
 std::vector<PriorRows> prior_rows(const GaussianPrior& prior) {
   std::vector<PriorRows> out;
   for (const Penalty& p : prior.penalties) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.omega);
-    const Eigen::VectorXd values = (p.lambda * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
-    out.push_back({p.first, values.asDiagonal() * eigen.eigenvectors().transpose(), Eigen::VectorXd::Zero(p.omega.rows())});
+    const SymmetricEigen eigen = symmetric_eigen(p.omega);
+    const Eigen::VectorXd values = (p.lambda * eigen.values.cwiseMax(0.0)).cwiseSqrt();
+    out.push_back({p.first, values.asDiagonal() * eigen.vectors.transpose(), Eigen::VectorXd::Zero(p.omega.rows())});
   }
   for (int c = 0; c < prior.columns.precision.size(); ++c) {
     const double precision = prior.columns.precision[c];

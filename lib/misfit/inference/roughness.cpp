@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "misfit/math/decompositions.h"
+
 namespace misfit {
 namespace {
 
@@ -37,10 +39,10 @@ PenaltyBasis penalty_eigenbasis(Eigen::Index columns, const std::vector<Penalty>
   PenaltyBasis out{Eigen::MatrixXd::Identity(columns, columns), penalties};
   for (Penalty& p : out.penalties) {
     const auto size = p.omega.rows();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(p.omega);
-    out.Q.block(p.first, p.first, size, size) = solver.eigenvectors();
+    const SymmetricEigen eigen = symmetric_eigen(p.omega);
+    out.Q.block(p.first, p.first, size, size) = eigen.vectors;
     Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(size);
-    stiffness.tail(p.rank) = solver.eigenvalues().tail(p.rank).cwiseMax(0.0);
+    stiffness.tail(p.rank) = eigen.values.tail(p.rank).cwiseMax(0.0);
     p.omega = stiffness.asDiagonal();
   }
   return out;

@@ -1,6 +1,5 @@
 #include "misfit/inference/solved_states.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <optional>
 
 #include "misfit/inference/states.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/limits.h"
 #include "misfit/sim/trajectory.h"
@@ -94,7 +94,7 @@ class OutputSolver {
     for (int step = 0; step < most_steps && here.residual.allFinite(); ++step) {
       Eigen::MatrixXd N = here.jacobian.transpose() * here.jacobian;
       N.diagonal() += damping * N.diagonal();
-      const Eigen::VectorXd d = N.ldlt().solve(here.jacobian.transpose() * here.residual);
+      const Eigen::VectorXd d = symmetric_solve(N, Eigen::VectorXd(here.jacobian.transpose() * here.residual));
       if (!d.allFinite()) return std::nullopt;
       States next = x;
       for (std::size_t u = 0; u < unknown_.size(); ++u) next[unknown_[u]] += d[u];
@@ -122,7 +122,7 @@ class OutputSolver {
   [[nodiscard]] bool counts(const Linear& at) const {
     constexpr double most_left = 0.5, least_share = 1e-6;
     if (!(at.residual.cwiseAbs().maxCoeff() < most_left)) return false;
-    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(at.jacobian).singularValues();
+    const Eigen::VectorXd values = right_singular(at.jacobian).values;
     return values[values.size() - 1] > least_share * values[0];
   }
 

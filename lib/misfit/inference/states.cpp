@@ -1,6 +1,5 @@
 #include "misfit/inference/states.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "misfit/inference/own_samples.h"
 #include "misfit/inference/own_states.h"
 #include "misfit/inference/solved_states.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/evaluator.h"
 
@@ -183,9 +183,9 @@ void set_own_states_at_rest(const Model& model, const InputsAt& u, double t, Eig
     if (size == 0) continue;
     const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> rows(D.data(), model.states(), model.states(),
                                                                     Eigen::OuterStride<>(kRowStride));
-    const Eigen::FullPivLU<Eigen::MatrixXd> block(Eigen::MatrixXd(rows.block(first, first, size, size)));
-    const Eigen::VectorXd rest = at.segment(first, size) - block.solve(Eigen::Map<const Eigen::VectorXd>(dx.data() + first, size));
-    if (block.rcond() > determined && rest.allFinite()) at.segment(first, size) = rest;
+    const std::optional<Eigen::MatrixXd> change =
+        solve(rows.block(first, first, size, size), Eigen::Map<const Eigen::VectorXd>(dx.data() + first, size), determined);
+    if (change && change->allFinite()) at.segment(first, size) -= *change;
   }
 }
 

@@ -1,7 +1,8 @@
 #include "misfit/math/bounded.h"
 
-#include <Eigen/Dense>
 #include <vector>
+
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -31,7 +32,7 @@ ActiveBounds active_at(const Gaussian& density, const Bounds& bounds, const std:
     const Eigen::Index i = active.at[k];
     active.excess[k] = (side[i] < 0 ? bounds.lower[i] : bounds.upper[i]) - centre[i];
   }
-  active.pull = covariance(active.at, active.at).ldlt().solve(active.excess);
+  active.pull = symmetric_solve(covariance(active.at, active.at), active.excess);
   return active;
 }
 
@@ -76,7 +77,7 @@ BoundedMaximum maximum_inside(const Eigen::VectorXd& centre, const Eigen::Matrix
   }
   const Eigen::VectorXd cut = centre.cwiseMax(lower).cwiseMin(upper);
   const Eigen::VectorXd off = cut - centre;
-  return {cut, 0.5 * off.dot(covariance.ldlt().solve(off))};
+  return {cut, 0.5 * off.dot(symmetric_solve(covariance, off))};
 }
 
 }  // namespace misfit

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "misfit/math/decompositions.h"
 #include "misfit/math/least_squares.h"
 #include "misfit/math/statistics.h"
 
@@ -46,7 +47,7 @@ double flatness(const std::vector<Vector2d>& points) {
   for (const Vector2d& p : points) centre += p / static_cast<double>(points.size());
   Matrix2d spread = Matrix2d::Zero();
   for (const Vector2d& p : points) spread += (p - centre) * (p - centre).transpose();
-  const Vector2d squares = Eigen::SelfAdjointEigenSolver<Matrix2d>(spread).eigenvalues();
+  const Vector2d squares = symmetric_eigen(spread).values;
   return squares(1) > 0.0 ? std::sqrt(std::max(squares(0), 0.0) / squares(1)) : 0.0;
 }
 
@@ -86,8 +87,7 @@ std::optional<Matrix3d> linear(const Task& task) {
     rows.row(2 * i + 1).segment<3>(3) = u;
     rows.row(2 * i + 1).tail<3>() = -q.y() * u;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
-  const Eigen::VectorXd h = svd.matrixV().col(8);
+  const Eigen::VectorXd h = right_singular(rows).vectors.col(8);
   if (std::abs(h(8)) < 1e-9) return std::nullopt;
   Matrix3d out;
   out << h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), h(8);
@@ -170,7 +170,7 @@ Eigen::MatrixXd covariance_of(const Task& task, const Solution& s, Eigen::Index 
     const auto found = projected(task, s.h.data(), s.k1, task.points[i].place);
     rows.middleRows(2 * i, 2) = found->slope.leftCols(unknowns);
   }
-  return sigma * sigma * (rows.transpose() * rows).ldlt().solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
+  return sigma * sigma * symmetric_inverse(rows.transpose() * rows);
 }
 
 PlaneFit fit_of(const Task& task, const Solution& s, bool lens, double pixel_sigma) {

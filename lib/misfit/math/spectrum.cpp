@@ -6,6 +6,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "misfit/core/lists.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 
@@ -101,9 +102,7 @@ std::vector<Eigen::MatrixXcd> spectral_density(const LagProducts& covariances, E
       density(0, 0) = std::max(density(0, 0).real(), 0.0);
       continue;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> eigen(density);
-    if (eigen.eigenvalues()[0] >= 0.0) continue;
-    density = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().adjoint();
+    density = nearest_positive_semidefinite(density);
   }
   return out;
 }

@@ -1,11 +1,11 @@
 #include "misfit/math/stable_zero.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "misfit/math/covariance.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 
@@ -71,9 +71,9 @@ WeightedPolynomial fit_polynomial(const WeightedPoints& points, Eigen::Index ord
     b(i) = points.value[k] / points.sigma[k];
   }
   const Eigen::MatrixXd normal = A.transpose() * A;
-  p.c = normal.ldlt().solve(A.transpose() * b);
+  p.c = symmetric_solve(normal, Eigen::VectorXd(A.transpose() * b));
   const double reduced = n > order ? (A * p.c - b).squaredNorm() / static_cast<double>(n - order) : 0.0;
-  p.covariance = normal.inverse() * (sigmas_known ? std::max(1.0, reduced) : reduced);
+  p.covariance = inverse(normal) * (sigmas_known ? std::max(1.0, reduced) : reduced);
   return p;
 }
 

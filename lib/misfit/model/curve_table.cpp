@@ -1,11 +1,11 @@
 #include "misfit/model/curve_table.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "misfit/core/error.h"
 #include "misfit/core/shown.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -41,7 +41,7 @@ double set_curve(Model& model, const std::string& name, const std::vector<double
   constexpr double relative_regularisation = 1e-9;
   N += relative_regularisation * (N.trace() / omega.trace()) * omega;
   N.diagonal().array() += 1e-14 * N.trace();
-  const Eigen::VectorXd c = N.ldlt().solve(b);
+  const Eigen::VectorXd c = symmetric_solve(N, b);
   for (int j = 0; j < size; ++j) model.parameters[curve->first + j].value = c[j];
   double worst = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -1,10 +1,10 @@
 #include "misfit/fit/filter/filter_noise_fit.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "misfit/jobs/work_queue.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -154,7 +154,7 @@ class Scoring {
           (at[k] <= vector_.lower[k] + 1e-9 && gradient_[i] > 0.0) || (at[k] >= vector_.upper[k] - 1e-9 && gradient_[i] < 0.0);
       if (outward) A(i, i) += 1e12;
     }
-    const Eigen::VectorXd d = A.ldlt().solve(gradient_);
+    const Eigen::VectorXd d = symmetric_solve(A, gradient_);
     expected = 0.5 * gradient_.dot(d);
     std::vector<double> next = at;
     for (std::size_t i = 0; i < at.size(); ++i)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "misfit/fit/filter/filter_sensitivities.h"
 #include "misfit/fit/filter/filter_steps.h"
 #include "misfit/sim/sampled_outputs.h"
 
@@ -40,7 +41,7 @@ class FilterPass {
         outputs_(stepper),
         a_(StateVector::Zero(n_)) {
     start_covariance(model_, data_, noise_, kalman_);
-    if (options_.jacobian != nullptr) begin_derivatives();
+    if (options_.jacobian != nullptr) sensitivities_.begin(*options_.jacobian, data_, {n_, ny_, evaluator_.columns()});
     std::copy_n(data_.start.data(), n_, x_.begin());
     prepare_at({stepper_, signals_, data_.inputs}, data_.first, x_.data());
   }
@@ -63,18 +64,6 @@ class FilterPass {
   static constexpr Eigen::Index twice(int count) { return 2 * static_cast<Eigen::Index>(count); }
   [[nodiscard]] double step_of(int o) const { return data_.steps.empty() ? 0.0 : data_.steps[o]; }
 
-  void begin_derivatives() {
-    const auto rows = static_cast<Eigen::Index>(std::count(data_.use.begin(), data_.use.end(), SampleRole::counted));
-    const int columns = evaluator_.columns();
-    options_.jacobian->J.resize(rows, columns);
-    options_.jacobian->r.resize(rows);
-    options_.jacobian->index.clear();
-    s_model_ = RowMatrix::Zero(n_, columns);
-    s_coloured_ = RowMatrix::Zero(twice(ny_), columns);
-    s_work_.resize(n_, columns);
-    s_row_.resize(columns);
-  }
-
   bool fails(std::size_t k) {
     trace_.failed_at = k;
     return false;
@@ -86,9 +75,11 @@ class FilterPass {
     const std::size_t NY_ = ny_;
     std::copy_n(x_.begin(), n_, trace_.predicted.begin() + (k * N_));
     if (options_.keep_P) {
-      Eigen::Map<RowMatrix> joint(trace_.P.data() + k * N_ * (N_ + 2 * NY_), n_, n_ + twice(ny_));
-      joint.leftCols(n_) = kalman_.P;
-      joint.rightCols(twice(ny_)) = kalman_.C;
+      double* at = trace_.P.data() + k * N_ * (N_ + 2 * NY_);
+      for (int i = 0; i < n_; ++i) {
+        for (int j = 0; j < n_; ++j) *at++ = kalman_.P(i, j);
+        for (int j = 0; j < 2 * ny_; ++j) *at++ = kalman_.C(i, j);
+      }
     }
     if (!outputs_.linearise({stepper_, signals_, data_.inputs}, k, x_.data(), slots_)) return false;
     kalman_.x.setZero();
@@ -96,7 +87,7 @@ class FilterPass {
       const std::size_t at = trace_.place(k, o);
       const std::size_t channel = o;
       for (int i = 0; i < n_; ++i) a_[i] = outputs_.row(o)[i];
-      Eigen::Map<Eigen::VectorXd>(trace_.H.data() + at * N_, n_) = a_;
+      std::copy_n(a_.data(), n_, trace_.H.data() + at * N_);
       trace_.y[at] = outputs_.y(o) + kalman_.j[twice(o)];
       const double step = step_of(o);
       trace_.y_variance[at] = kalman_.variance(a_, o, noise_.channels[channel].white) + step * step / 12.0;
@@ -122,9 +113,12 @@ class FilterPass {
     if (!std::isfinite(reading.minus_log)) return false;
     count(use, -reading.minus_log);
     kalman_.update(reading.e, reading.S);
-    Eigen::Map<Eigen::VectorXd>(trace_.K.data() + at * N_, n_) = kalman_.gain;
-    Eigen::Map<Eigen::VectorXd>(trace_.Kj.data() + at * 2 * ny_, twice(ny_)) = kalman_.gain_coloured;
-    if (options_.jacobian != nullptr) differentiate_update(at, o, use);
+    std::copy_n(kalman_.gain.data(), n_, trace_.K.data() + at * N_);
+    std::copy_n(kalman_.gain_coloured.data(), 2 * ny_, trace_.Kj.data() + at * 2 * ny_);
+    if (options_.jacobian == nullptr) return true;
+    sensitivities_.predict_output(trace_.H.data() + at * N_, o, outputs_.row(o) + n_, slots_);
+    if (use == SampleRole::counted) sensitivities_.keep(at, trace_);
+    sensitivities_.update(kalman_.gain.data(), kalman_.gain_coloured.data());
     return true;
   }
 
@@ -158,23 +152,6 @@ class FilterPass {
     }
   }
 
-  void differentiate_update(std::size_t at, int o, SampleRole use) {
-    s_row_ = a_.transpose().lazyProduct(s_model_);
-    s_row_ += s_coloured_.row(twice(o));
-    const double* row = outputs_.row(o) + n_;
-    for (int c = 0; c < slots_.count(); ++c) s_row_[slots_.column(c)] += row[c];
-    if (use == SampleRole::counted) {
-      FilterJacobian& jacobian = *options_.jacobian;
-      const Eigen::Index r = jacobian.index.size();
-      const double whiten = 1.0 / std::sqrt(trace_.S[at]);
-      jacobian.J.row(r) = whiten * s_row_;
-      jacobian.r[r] = -whiten * trace_.e[at];
-      jacobian.index.push_back(at);
-    }
-    s_model_ -= kalman_.gain.lazyProduct(s_row_);
-    s_coloured_ -= kalman_.gain_coloured.lazyProduct(s_row_);
-  }
-
   void correct_state(std::size_t k) {
     for (int i = 0; i < n_; ++i) {
       trace_.correction[k * N_ + i] = kalman_.x[i];
@@ -187,22 +164,11 @@ class FilterPass {
     if (!stepper_.step_linear(x_.data(), interval, slots_, D_.data())) return false;
     const Eigen::Map<const Eigen::Matrix<double, M, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>, 0, Eigen::OuterStride<>> phi(
         D_.data(), n_, n_, Eigen::OuterStride<>(kRowStride));
-    Eigen::Map<RowMatrix>(trace_.Phi.data() + k * N_ * N_, n_, n_) = phi;
+    for (int i = 0; i < n_; ++i)
+      std::copy_n(D_.data() + static_cast<std::size_t>(i) * kRowStride, n_, trace_.Phi.data() + (k * N_ + i) * N_);
     const NoiseStep& noise_step = steps_.at(interval.t1 - interval.t0);
     kalman_.predict(phi, noise_step, model_);
-    if (options_.jacobian == nullptr) return true;
-    s_work_ = phi.lazyProduct(s_model_);
-    for (int i = 0; i < n_; ++i) {
-      const double* row = D_.data() + static_cast<std::ptrdiff_t>(i) * kRowStride + n_;
-      for (int c = 0; c < slots_.count(); ++c) s_work_(i, slots_.column(c)) += row[c];
-    }
-    s_model_.swap(s_work_);
-    for (int o = 0; o < ny_; ++o) {
-      const auto& p = noise_step.coloured[o].phi;
-      s_row_ = s_coloured_.row(twice(o));
-      s_coloured_.row(twice(o)) = p[0] * s_row_ + p[1] * s_coloured_.row(twice(o) + 1);
-      s_coloured_.row(twice(o) + 1) = p[2] * s_row_ + p[3] * s_coloured_.row(twice(o) + 1);
-    }
+    if (options_.jacobian != nullptr) sensitivities_.step(D_.data(), slots_, noise_step);
     return true;
   }
 
@@ -224,8 +190,7 @@ class FilterPass {
   Slots slots_;
   std::array<double, kMaxStates> x_{};
   std::array<int, kMaxOutputs> wild_run_{};  // measurements beyond the gate in a row; -1: too many
-  RowMatrix s_model_, s_coloured_, s_work_;  // ∂(state)/∂θ with the gains fixed
-  Eigen::RowVectorXd s_row_;
+  FilterSensitivities sensitivities_;
 };
 
 }  // namespace misfit

@@ -1,6 +1,5 @@
 #include "misfit/fit/filter/likelihood_ascent.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "misfit/fit/filter/mirrored_start.h"
 #include "misfit/math/bounded.h"
 #include "misfit/math/covariance.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -198,7 +198,7 @@ void LikelihoodAscent::damped_step(const Eigen::MatrixXd& precision, const Eigen
   for (double damping = weakest; damping <= strongest; damping *= stronger) {
     Eigen::MatrixXd damped = precision;
     damped.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd before = theta, there = (theta + damped.ldlt().solve(gradient)).cwiseMax(lower).cwiseMin(upper);
+    const Eigen::VectorXd before = theta, there = (theta + symmetric_solve(damped, gradient)).cwiseMax(lower).cwiseMin(upper);
     if (!(objective_at(there, out.noise) > objective + least_gain)) continue;
     theta = there;
     if (linearise()) {

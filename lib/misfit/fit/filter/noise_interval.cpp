@@ -1,8 +1,9 @@
 #include "misfit/fit/filter/noise_interval.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -38,7 +39,7 @@ class Paths {
     const LinearisedRuns runs{&estimate_.forced, &estimate_.data, &estimate_.traces};
     Eigen::MatrixXd information = noise_information(runs, {logs.data(), logs.data() + logs.size()}, estimate_.reference, threads_);
     pin_unknown(estimate_.noise_fit, information);
-    return scale_.asDiagonal() * information.inverse() * scale_.asDiagonal();
+    return scale_.asDiagonal() * inverse(information) * scale_.asDiagonal();
   }
 
   [[nodiscard]] Eigen::VectorXd inside(const Eigen::VectorXd& logs) const {

@@ -1,6 +1,5 @@
 #include "misfit/fit/filter/noise_report.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +9,7 @@
 #include "misfit/core/text.h"
 #include "misfit/fit/filter/noise_interval.h"
 #include "misfit/math/covariance.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
@@ -21,9 +21,8 @@ std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
   Eigen::MatrixXd information = fit.information;
   const std::vector<bool> known = pin_unknown(fit, information);
   const Eigen::Index q = information.rows();
-  const Eigen::MatrixXd covariance = estimate.joint_covariance.size() > 0
-                                         ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q))
-                                         : Eigen::MatrixXd(information.inverse());
+  const Eigen::MatrixXd covariance =
+      estimate.joint_covariance.size() > 0 ? Eigen::MatrixXd(estimate.joint_covariance.bottomRightCorner(q, q)) : inverse(information);
   std::vector<double> out;
   for (Eigen::Index i = 0; i < covariance.rows(); ++i)
     out.push_back(known[i] && !pinned(covariance(i, i)) ? standard_error(covariance, i) : 0.0);

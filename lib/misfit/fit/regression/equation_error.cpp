@@ -20,6 +20,7 @@
 #include "misfit/inference/own_clocks.h"
 #include "misfit/inference/short_record.h"
 #include "misfit/math/bounded.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -177,7 +178,7 @@ ColumnPriors very_wide_beside(const NormalEquations& sums, const Model& model, c
   const Eigen::VectorXd information = sums.N.diagonal();
   Eigen::MatrixXd N = sums.N;
   N.diagonal() += rounding * information + Eigen::VectorXd::Constant(information.size(), std::numeric_limits<double>::min());
-  const double left = sums.rss - sums.g.dot(N.ldlt().solve(sums.g)), variance = left / std::max(sums.count, 1.0);
+  const double left = sums.rss - sums.g.dot(symmetric_solve(N, sums.g)), variance = left / std::max(sums.count, 1.0);
   const bool usable = variance > 0.0 && std::isfinite(variance);
   return regularised_priors_about(sums.theta, model, penalties, usable ? Eigen::MatrixXd(sums.N / variance) : sums.N);
 }

@@ -1,10 +1,10 @@
 #include "misfit/fit/regression/linear_windows.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -28,7 +28,7 @@ Step step_of(const Poles& poles, double dt) {
     a(1, 1) = -poles.damping;
   }
   a(n - 1, n) = 1.0;
-  const Eigen::MatrixXd whole = (Eigen::MatrixXd(a) * dt).exp();
+  const Eigen::MatrixXd whole = exponential(a * dt);
   return {whole.topLeftCorner(n, n), whole.topRightCorner(n, 1)};
 }
 

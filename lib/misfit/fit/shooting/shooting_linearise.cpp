@@ -1,10 +1,10 @@
 // Gaussian linearisations of the shooting problem: what roughness, covariance and benchmarks need.
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "misfit/fit/shooting/shooting.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 
@@ -40,14 +40,13 @@ bool Shooting::linearise_segments(std::size_t length, NormalEquations& out) {
     double* J[2] = {theta_rows.data(), state_rows.data()};
     fill_rows(piece, r.data(), J);
     // The segment's own initial state is projected out: what is left depends on the parameters alone.
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> states(state_rows);
-    const Eigen::MatrixXd Q = Eigen::MatrixXd(states.householderQ() * Eigen::MatrixXd::Identity(rows, states.rank()));
+    const Eigen::MatrixXd Q = column_space(state_rows);
     r -= Q * (Q.transpose() * r);
     theta_rows -= Q * (Q.transpose() * theta_rows);
     out.N.noalias() += theta_rows.transpose() * theta_rows;
     out.g.noalias() += theta_rows.transpose() * r;
     out.rss += r.squaredNorm();
-    out.count += std::max(counted(piece) - static_cast<double>(states.rank()), 0.0);
+    out.count += std::max(counted(piece) - static_cast<double>(Q.cols()), 0.0);
   }
   return true;
 }

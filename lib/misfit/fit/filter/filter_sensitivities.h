@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "misfit/fit/filter/filter_run.h"
+#include "misfit/model/evaluator.h"
+
+namespace misfit {
+
+/// Derivatives of the filter's state by the free parameters, the gains fixed, along one pass over an experiment.
+class FilterSensitivities {
+ public:
+  struct Sizes {
+    int states = 0, outputs = 0, columns = 0;
+  };
+  /// First. `jacobian`, which outlives this, gets whitened rows.
+  void begin(FilterJacobian& jacobian, const FilterData& data, const Sizes& sizes);
+
+  /// Derivatives of the predicted output o: `a` = ∂h/∂x; `direct`: ∂h/∂θ, one value for each of `slots`.
+  void predict_output(const double* a, int o, const double* direct, const Slots& slots);
+  /// The row of the measurement at this place of the trace; after predict_output().
+  void keep(std::size_t place, const FilterTrace& trace);
+  /// By the gains of the model's states and of the coloured noise; after predict_output().
+  void update(const double* gain, const double* gain_coloured);
+  /// Over a step: `D`: kRowStride per state, ∂(state)/∂(state before) and then a value for each of `slots`.
+  void step(const double* D, const Slots& slots, const NoiseStep& noise);
+
+ private:
+  FilterJacobian* jacobian_ = nullptr;
+  RowMatrix model_, coloured_, work_;  ///< a row per state; columns that fill the last block are 0
+  Eigen::RowVectorXd row_;             ///< of the output that was predicted last
+};
+
+}  // namespace misfit
