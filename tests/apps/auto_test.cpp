@@ -41,7 +41,7 @@ TEST(DiscoverAuto, AddsWhatIsAcceptedAndLooksAgain) {
 
 /// The planar model lacks a degree of freedom, which no effect describes: whatever follows some of it is not to be taken for it.
 TEST(Discover, APlanarModelOfAConingFlightLacksWhatNoEffectIs) {
-  const ShortFlight study("parachute_planar", 40.0);
+  const ShortFlight study("parachute_planar", 28.0);
   const Outcome outcome = study.run("discover");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::size_t box = outcome.out.find("\nVerdict\n");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "misfit/diagnose/features.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/statistics.h"
 #include "tests/fit/cart_filter.h"
 #include "tests/model/declared_texts.h"
@@ -57,12 +58,12 @@ TEST(ScoreTest, IsTheLeastSquaresAnswerForWhatIsAdded) {
   const ScoreResult result = score.test(C);
   Eigen::MatrixXd all(40, 3);
   all << column, C;
-  const Eigen::VectorXd best = all.colPivHouseholderQr().solve(-r), alone = column.colPivHouseholderQr().solve(-r);
+  const Eigen::VectorXd best = least_squares(all, -r), alone = least_squares(column, -r);
   EXPECT_NEAR(result.amplitude[0], best[1], 1e-6);
   EXPECT_NEAR(result.amplitude[1], best[2], 1e-6);
   EXPECT_NEAR(result.chi2, (r + column * alone).squaredNorm() - (r + all * best).squaredNorm(), 1e-4);
   EXPECT_NEAR(score.adjusted_step(C, result.amplitude)[0], best[0], 1e-5);
-  const Eigen::MatrixXd inverse = (all.transpose() * all).inverse();
+  const Eigen::MatrixXd inverse = misfit::inverse(all.transpose() * all);
   EXPECT_NEAR(result.sigma[0], std::sqrt(inverse(1, 1)), 1e-6);
   EXPECT_LT((result.covariance - inverse.bottomRightCorner(2, 2)).norm(), 1e-6);
   EXPECT_LT((column.transpose() * score.projected(C)).norm(), 1e-3);

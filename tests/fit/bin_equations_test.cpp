@@ -4,11 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "misfit/fit/regression/sliding_bin.h"
+#include "misfit/math/decompositions.h"
 #include "tests/fit/planar_model.h"
 
 namespace misfit {
@@ -41,7 +42,7 @@ Eigen::Vector3d eq_11(const std::vector<Sample>& bin, bool gravity) {
     moment[i] = (I * s.acceleration - weight) / moment_scale;
     mean += s.alpha / static_cast<double>(n);
   }
-  const Eigen::Vector3d c = A.colPivHouseholderQr().solve(moment);
+  const Eigen::Vector3d c = least_squares(A, moment);
   return {mean, c[1] * mean + c[2], c[0] * 2.0 * k.at("V") / k.at("D")};
 }
 

@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "misfit/fit/filter/filter_noise_fit.h"
 #include "misfit/fit/filter/noise_interval.h"
+#include "misfit/math/decompositions.h"
 #include "tests/fit/cart_filter.h"
 
 namespace misfit {
@@ -29,7 +30,7 @@ struct Known {
   }
 
   [[nodiscard]] Eigen::MatrixXd covariance(const std::vector<double>& logs) const {
-    return noise_information({&estimate.forced, &estimate.data, &estimate.traces}, logs, estimate.reference, 1).inverse();
+    return inverse(noise_information({&estimate.forced, &estimate.data, &estimate.traces}, logs, estimate.reference, 1));
   }
 
   /// The path in many small steps.

@@ -3,10 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -16,7 +17,7 @@ Eigen::MatrixXd van_loan(const Eigen::MatrixXd& A, const Eigen::MatrixXd& D, dou
   const Eigen::Index n = A.rows();
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   M << -A, D, Eigen::MatrixXd::Zero(n, n), A.transpose();
-  const Eigen::MatrixXd E = (M * h).exp();
+  const Eigen::MatrixXd E = exponential(M * h);
   return E.bottomRightCorner(n, n).transpose() * E.topRightCorner(n, n);
 }
 
@@ -27,7 +28,7 @@ TEST(Discretise, RandomForceOnAFreeMassIsVanLoans) {
     Eigen::Matrix3d A, D = Eigen::Matrix3d::Zero();  // force, rate, level
     A << -10.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
     D(0, 0) = 2.0 * 27.0 * 27.0 / 0.1;
-    const Eigen::MatrixXd Q = van_loan(A, D, h), Phi = (A * h).exp();
+    const Eigen::MatrixXd Q = van_loan(A, D, h), Phi = exponential(A * h);
     const NoiseStep step = discretise(noise, h);
     for (Eigen::Index i = 0; i < 3; ++i) {
       for (Eigen::Index j = 0; j < 3; ++j) {

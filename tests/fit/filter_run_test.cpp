@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "misfit/math/decompositions.h"
 #include "tests/fit/cart_filter.h"
 
 namespace misfit {
@@ -12,10 +13,10 @@ namespace {
 using namespace testing_cart;
 
 double dense_loglik(const Dense& dense) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(dense.y_covariance);
-  const Eigen::VectorXd white = factor.matrixL().solve(dense.y - dense.y_mean);
-  const double log_root = Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum();
-  return -0.5 * white.squaredNorm() - log_root - 0.5 * static_cast<double>(dense.y.size()) * std::log(2.0 * std::numbers::pi);
+  const Eigen::VectorXd off = dense.y - dense.y_mean;
+  const double log_root = cholesky(dense.y_covariance).value().diagonal().array().log().sum();
+  return -0.5 * off.dot(symmetric_solve(dense.y_covariance, off)) - log_root -
+         0.5 * static_cast<double>(dense.y.size()) * std::log(2.0 * std::numbers::pi);
 }
 
 TEST(FilterRun, LikelihoodOfALinearSystemIsTheDensityOfItsReadings) {
@@ -40,9 +41,9 @@ TEST(FilterRun, SmootherGivesTheConditionalMeanAndVariance) {
   const FilterTrace trace = cart.run(nullptr, true);
   const Dense dense(cart, trace);
   const Smoothing smooth = smooth_states(trace, cart.data, cart.noise);
-  const Eigen::LLT<Eigen::MatrixXd> factor(dense.y_covariance);
-  const Eigen::VectorXd mean = dense.state_mean + dense.cross * factor.solve(dense.y - dense.y_mean);
-  const Eigen::MatrixXd covariance = dense.states - dense.cross * factor.solve(dense.cross.transpose());
+  const Eigen::MatrixXd gain = symmetric_solve(dense.y_covariance, Eigen::MatrixXd(dense.cross.transpose())).transpose();
+  const Eigen::VectorXd mean = dense.state_mean + gain * (dense.y - dense.y_mean);
+  const Eigen::MatrixXd covariance = dense.states - gain * dense.cross.transpose();
   for (Eigen::Index k = 0; k < 20; ++k) {
     for (Eigen::Index i = 0; i < trace.n; ++i) {
       const Eigen::Index at = k * dense.n + i;

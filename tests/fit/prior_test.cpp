@@ -9,6 +9,7 @@
 #include "misfit/fit/regression/equation_error.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/inference/curves.h"
+#include "misfit/math/decompositions.h"
 #include "tests/fit/planar_model.h"
 #include "tests/fit/room.h"
 
@@ -66,7 +67,7 @@ TEST(RegularisedPriors, WhatIsLeftToThemIsNamed) {
     const Eigen::Vector2d information(1.0 / (sigma_of_data * sigma_of_data), 1.0);
     Eigen::Matrix2d precision = information.asDiagonal();
     precision.diagonal() += regularised_priors(model, information).precision;
-    return left_to_wide_priors(model, information, precision.inverse());
+    return left_to_wide_priors(model, information, inverse(precision));
   };
   EXPECT_EQ(left(1e9), std::vector<int>{free[0]}) << "1e10 typical sizes";
   EXPECT_TRUE(left(1e7).empty()) << "wide of what the measurements know";

@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <random>
 
 #include "misfit/inference/curve_freedom.h"
 #include "misfit/inference/roughness.h"
 #include "misfit/math/bspline.h"
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -73,7 +74,7 @@ TEST(UncertainRoughness, AGivenRoughnessLeavesTheCovarianceAsItIs) {
 /// weight for known are too narrow, those that do not hold what they say.
 TEST(UncertainRoughness, BandsHoldWhatTheySay) {
   const CurveMeasurements r = measurements();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(r.spline.roughness());
+  const SymmetricEigen eigen = symmetric_eigen(r.spline.roughness());
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> size(0.0, 0.2);
@@ -82,7 +83,7 @@ TEST(UncertainRoughness, BandsHoldWhatTheySay) {
   for (int draw = 0; draw < draws; ++draw) {
     const double tau = size(random);
     Eigen::VectorXd c = Eigen::VectorXd::Zero(r.A.cols());
-    for (Eigen::Index i = 2; i < c.size(); ++i) c += eigen.eigenvectors().col(i) * normal(random) * tau / std::sqrt(eigen.eigenvalues()[i]);
+    for (Eigen::Index i = 2; i < c.size(); ++i) c += eigen.vectors.col(i) * normal(random) * tau / std::sqrt(eigen.values[i]);
     Eigen::VectorXd y = r.A * c;
     for (double& measurement : y) measurement += normal(random);
     const NormalEquations problem = problem_of(r, y);
@@ -127,9 +128,8 @@ constexpr double wide = 1e-8;  // precision of each coefficient beside the rough
 double log_density(const CurveMeasurements& r, const Eigen::VectorXd& y, const Penalty& penalty) {
   Eigen::MatrixXd prior = penalty.lambda * penalty.omega;
   prior.diagonal().array() += wide;
-  const Eigen::MatrixXd V = Eigen::MatrixXd::Identity(y.size(), y.size()) + r.A * prior.ldlt().solve(r.A.transpose());
-  const Eigen::LDLT<Eigen::MatrixXd> factors(V);
-  return -0.5 * factors.vectorD().array().log().sum() - 0.5 * y.dot(factors.solve(y));
+  const Eigen::MatrixXd V = Eigen::MatrixXd::Identity(y.size(), y.size()) + r.A * symmetric_solve(prior, Eigen::MatrixXd(r.A.transpose()));
+  return -cholesky(V).value().diagonal().array().log().sum() - 0.5 * y.dot(symmetric_solve(V, y));
 }
 
 TEST(RoughnessPaths, AreTheFitsThatAnotherRoughnessGives) {
@@ -214,7 +214,7 @@ struct StiffBesideWeak {
     line = Eigen::MatrixXd(n, 3);
     line << sure * straight, beside;
   }
-  [[nodiscard]] double expected() const { return Eigen::MatrixXd(line.transpose() * line).inverse()(2, 2); }
+  [[nodiscard]] double expected() const { return inverse(line.transpose() * line)(2, 2); }
 };
 
 TEST(InvertWith, AStiffCurveIsALineInItsPlace) {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
+
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -15,18 +17,18 @@ TEST(BfgsInverse, WithoutUpdatesIsTheInitialOne) {
 
 /// −½ xᵀAx with updates along three conjugate directions: the inverse of A, whatever the initial one.
 TEST(BfgsInverse, IsExactForAQuadraticAfterConjugateSteps) {
-  Eigen::Matrix3d A;
+  Eigen::MatrixXd A(3, 3);
   A << 4.0, 1.0, 0.5, 1.0, 3.0, -0.7, 0.5, -0.7, 2.0;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(A);
+  const SymmetricEigen axes = symmetric_eigen(A);
   BfgsInverse bfgs;
   Eigen::VectorXd x = Eigen::Vector3d(1.0, -2.0, 0.3);
   bfgs.update(x, -A * x);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    x += (0.3 + static_cast<double>(k)) * axes.eigenvectors().col(k);
+    x += (0.3 + static_cast<double>(k)) * axes.vectors.col(k);
     bfgs.update(x, -A * x);
   }
-  const Eigen::MatrixXd inverse = bfgs.inverse(100.0 * Eigen::MatrixXd::Identity(3, 3));
-  EXPECT_LT((inverse - A.inverse()).norm(), 1e-10 * inverse.norm());
+  const Eigen::MatrixXd found = bfgs.inverse(100.0 * Eigen::MatrixXd::Identity(3, 3));
+  EXPECT_LT((found - inverse(A)).norm(), 1e-10 * found.norm());
 }
 
 TEST(BfgsInverse, IgnoresStepsAlongWhichTheObjectiveIsConvex) {

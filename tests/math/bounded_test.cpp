@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <limits>
 #include <random>
+
+#include "misfit/math/decompositions.h"
 
 namespace misfit {
 namespace {
@@ -46,7 +48,7 @@ TEST(MaximumInside, NoPointOfTheBoxIsHigher) {
     const Eigen::MatrixXd covariance = A * A.transpose() + 0.05 * Eigen::MatrixXd::Identity(n, n);
     const Eigen::VectorXd centre = Eigen::VectorXd::NullaryExpr(n, [&] { return 2.0 * normal(dice); });
     const Eigen::VectorXd lower = Eigen::VectorXd::Constant(n, -1.0), upper = Eigen::VectorXd::Constant(n, 0.5);
-    const Eigen::MatrixXd P = covariance.inverse();
+    const Eigen::MatrixXd P = inverse(covariance);
     const auto depth = [&](const Eigen::VectorXd& x) { return 0.5 * (x - centre).dot(P * (x - centre)); };
     const BoundedMaximum found = maximum_inside(centre, covariance, lower, upper);
     EXPECT_NEAR(found.below, depth(found.at), 1e-8 * (1.0 + found.below));

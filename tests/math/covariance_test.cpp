@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "misfit/math/decompositions.h"
+
 namespace misfit {
 namespace {
 
@@ -24,7 +26,7 @@ TEST(Covariance, AxesAreThoseOfTheCorrelationMatrixInStepsOfOneSigma) {
   const CorrelationAxes axes = correlation_axes(example());
   for (const auto& [column, eigenvalue] : {std::pair(0, 0.4), std::pair(1, 1.6)}) {
     const Eigen::Vector2d step = axes.along.col(column);
-    EXPECT_NEAR(step.dot(example().inverse() * step), 1.0, 1e-9);
+    EXPECT_NEAR(step.dot(inverse(example()) * step), 1.0, 1e-9);
     EXPECT_NEAR(std::abs(step[0] / 2.0), std::sqrt(0.5 * eigenvalue), 1e-12);
     EXPECT_NEAR(std::abs(step[1] / 1e-3), std::sqrt(0.5 * eigenvalue), 1e-12);
   }

@@ -188,6 +188,8 @@ def keys_in_a_pair_map(page):
         return found
     across = [ranges(Keys.ARROW_RIGHT) for _ in range(3)]
     assert len({x for x, _ in across}) == 3, across
+    while (lowest := ranges(Keys.ARROW_DOWN)) == ranges(Keys.ARROW_UP):  # back to a column of more than one cell
+        assert ranges(Keys.ARROW_LEFT) != lowest, "a column of two cells"
     x, y = ranges(Keys.ARROW_DOWN)
     rows = [ranges(key) for key in (Keys.ARROW_UP, Keys.ARROW_UP, Keys.ARROW_DOWN)]
     assert {row[0] for row in rows} == {x} and len({row[1] for row in rows} | {y}) >= 2, rows

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "misfit/math/decompositions.h"
 #include "tests/model/cases.h"
 #include "tests/model/differences.h"
 
@@ -233,7 +234,7 @@ Frictions recovered_frictions(const std::string& dry, const Signals& signals, do
     EXPECT_TRUE(s.finite);
     const Eigen::MatrixXd J = s.y_rows.leftCols(2);
     const Eigen::VectorXd residual = Eigen::Map<const Eigen::VectorXd>(signals.measured[0].values.data(), s.y.rows()) - s.y.col(0);
-    const Eigen::VectorXd change = (J.transpose() * J).ldlt().solve(J.transpose() * residual);
+    const Eigen::VectorXd change = symmetric_solve(J.transpose() * J, Eigen::VectorXd(J.transpose() * residual));
     for (std::size_t c = 0; c < 2; ++c) model.parameters[static_cast<std::size_t>(free[c])].value += change[static_cast<Eigen::Index>(c)];
   }
   return {model.parameters[static_cast<std::size_t>(free[0])].value, model.parameters[static_cast<std::size_t>(free[1])].value};
