@@ -9,6 +9,7 @@
 #include "misfit/diagnose/distinct_ports.h"
 #include "misfit/discover/accept.h"
 #include "misfit/discover/added_force.h"
+#include "misfit/discover/beside_a_curve.h"
 #include "misfit/discover/candidate.h"
 #include "misfit/discover/conditional.h"
 #include "misfit/discover/fixed_parameters.h"
@@ -143,6 +144,7 @@ class Search {
 
   void rank() {
     for (const auto& s : screening_) ranked_.push_back(ranked_as_screened(s, families_));
+    leave_out_what_a_finer_curve_describes(scores(), ranked_);
     sort_by_evidence(ranked_);
     waves_.emplace(context(), score_, candidates_.models, ranked_, part(end_of_curves, end_of_refits));
   }

@@ -54,17 +54,6 @@ Eigen::VectorXd independence(const Eigen::MatrixXd& columns) {
   return inverse.diagonal().cwiseInverse().cwiseMin(1.0);
 }
 
-/// ∂(predicted − measured)/√S by the free parameters: rows of the estimate × free parameters.
-Eigen::MatrixXd columns_of_parameters(const FilterEstimate& estimate) {
-  Eigen::MatrixXd out(counted_rows(estimate), int_size(estimate.model.free_parameters()));
-  Eigen::Index at = 0;
-  for (const FilterJacobian& jacobian : estimate.jacobians) {
-    out.middleRows(at, jacobian.r.size()) = jacobian.J;
-    at += jacobian.r.size();
-  }
-  return out;
-}
-
 /// The hats with 1, q, q² and q³ beside them, which are splines, too, where hats with few samples under them are left out.
 Eigen::MatrixXd with_powers(const Eigen::MatrixXd& hats, const Eigen::VectorXd& q) {
   constexpr int powers = 4;
@@ -78,12 +67,6 @@ Eigen::MatrixXd with_powers(const Eigen::MatrixXd& hats, const Eigen::VectorXd& 
 Eigen::MatrixXd without_column(const Eigen::MatrixXd& columns, Eigen::Index gone) {
   Eigen::MatrixXd out(columns.rows(), columns.cols() - 1);
   out << columns.leftCols(gone), columns.rightCols(columns.cols() - gone - 1);
-  return out;
-}
-
-Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  Eigen::MatrixXd out(a.rows(), a.cols() + b.cols());
-  out << a, b;
   return out;
 }
 
@@ -125,6 +108,22 @@ std::vector<double> with_those_beyond(const std::vector<double>& narrow, const s
 }
 
 }  // namespace
+
+Eigen::MatrixXd columns_of_parameters(const FilterEstimate& estimate) {
+  Eigen::MatrixXd out(counted_rows(estimate), int_size(estimate.model.free_parameters()));
+  Eigen::Index at = 0;
+  for (const FilterJacobian& jacobian : estimate.jacobians) {
+    out.middleRows(at, jacobian.r.size()) = jacobian.J;
+    at += jacobian.r.size();
+  }
+  return out;
+}
+
+Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd out(a.rows(), a.cols() + b.cols());
+  out << a, b;
+  return out;
+}
 
 std::vector<int> parameters_in_columns(const FilterEstimate& estimate, const Eigen::MatrixXd& columns) {
   constexpr double described_below = 0.01;

@@ -28,4 +28,9 @@ namespace misfit {
 /// and straight lines are curves, too. One at a time, the best described first, since the next may be determined once it is fixed.
 [[nodiscard]] std::vector<int> parameters_in_columns(const FilterEstimate& estimate, const Eigen::MatrixXd& columns);
 
+/// ∂(predicted − measured)/√S by the free parameters: rows of the estimate × free parameters.
+[[nodiscard]] Eigen::MatrixXd columns_of_parameters(const FilterEstimate& estimate);
+/// Those of `b` after those of `a`.
+[[nodiscard]] Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
 }  // namespace misfit

@@ -30,8 +30,25 @@ std::vector<double> grid_over(double lowest, double highest, const std::string& 
   return x;
 }
 
+/// What is constant is computed to a few last digits.
+bool moves(double lowest, double highest) {
+  constexpr double rounding = 1e-9;
+  return highest - lowest > rounding * std::max(std::abs(highest), std::abs(lowest));
+}
+
+bool stands_still(const std::vector<double>& values) {
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  return !values.empty() && !moves(*lowest, *highest);
+}
+
 /// A curve of a parity is the same on both sides of 0: what is visited there counts on the positive one.
 double folded(double value, const Curve& curve) { return curve.spline.parity() == Parity::none ? value : std::abs(value); }
+
+std::vector<double> folded(const RowMatrix& visited, const Curve& curve) {
+  std::vector<double> out;
+  for (const double value : visited.col(curve.quantity)) out.push_back(folded(value, curve));
+  return out;
+}
 
 std::vector<double> counts_at(const std::vector<double>& x, const RowMatrix& visited, const Curve& curve) {
   std::vector<double> count(x.size(), 0.0);
@@ -132,6 +149,26 @@ class CurveBands {
   std::vector<int> column_of_;
 };
 
+/// Quantities where the model, at its starting values and without its open curves, carries the states that no channel shows; nothing where
+/// that leaves the finite numbers.
+RowMatrix quantities_of_carried_states(const Model& model, const std::vector<Signals>& experiments,
+                                       std::vector<ReconstructedStates> states) {
+  Stepper stepper(model);
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    const Eigen::Index first = std::find(states[e].ok.begin(), states[e].ok.end(), true) - states[e].ok.begin();
+    if (first == std::ssize(states[e].ok)) continue;
+    const Eigen::VectorXd begin = states[e].x.row(first);
+    const InputTable inputs = input_table(experiments[e], model);
+    const RowMatrix run =
+        run_states({stepper, experiments[e], inputs}, {static_cast<std::size_t>(first), experiments[e].samples(), begin.data()});
+    if (run.rows() + first < states[e].x.rows()) return {};
+    for (Eigen::Index j = 0; j < model.system_states(); ++j) {
+      if (!states[e].shown[j]) states[e].x.col(j).tail(run.rows()) = run.col(j);
+    }
+  }
+  return visited_quantities(model, experiments, states);
+}
+
 }  // namespace
 
 RowMatrix visited_quantities(const Model& model, const Signals& signals, const ReconstructedStates& states) {
@@ -169,9 +206,7 @@ std::vector<double> choose_knots(std::vector<double> visited, int intervals, con
   const auto at = [&](double fraction) { return visited[static_cast<std::size_t>(fraction * static_cast<double>(visited.size() - 1))]; };
   double low = at(tail);
   const double high = at(1.0 - tail);
-  const double rounding = 1e-9 * std::max(std::abs(high), std::abs(low));  // a constant is computed to a few last digits
-  if (!(high - low > rounding))
-    throw RunError("curve " + curve + ": its quantity does not move, it is " + format_value(low) + " throughout");
+  if (!moves(low, high)) throw RunError("curve " + curve + ": its quantity does not move, it is " + format_value(low) + " throughout");
   const int pieces = std::clamp(static_cast<int>(static_cast<double>(visited.size()) / samples_per_interval), 2, intervals);
   if (low >= 0.0) low = std::max(low, (high - low) / (2.0 * pieces));
   std::vector<double> knots;
@@ -182,19 +217,21 @@ std::vector<double> choose_knots(std::vector<double> visited, int intervals, con
 void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals) {
   const auto open = curves_without_knots(request, registry);
   if (open.empty()) return;
-  const Model model = provisional_model(request, registry);  // only quantities are evaluated
+  const Model model = provisional_model(request, registry);
   const auto names = parameter_names(request, registry);
-  std::map<std::string, std::vector<double>> visited;
-  for (const auto& experiment : experiments) {
-    const RowMatrix values = visited_quantities(model, experiment, reconstruct_states(model, experiment));
-    for (const auto& [name, of] : open) {
-      const Curve& curve = *model.find_curve(names.at(name));
-      for (const double value : values.col(curve.quantity)) visited[name].push_back(folded(value, curve));
-    }
-  }
+  std::vector<ReconstructedStates> states;
+  for (const auto& experiment : experiments) states.push_back(reconstruct_states(model, experiment));
+  const RowMatrix shown = visited_quantities(model, experiments, states);
+  RowMatrix carried;  // where the model takes states that no channel shows: only if a curve is over these
   for (const auto& [name, of] : open) {
+    const Curve& curve = *model.find_curve(names.at(name));
+    std::vector<double> visited = folded(shown, curve);
+    if (stands_still(visited)) {
+      if (carried.size() == 0) carried = quantities_of_carried_states(model, experiments, states);
+      if (carried.size() > 0) visited = folded(carried, curve);
+    }
     request.curves[name].of = of;
-    request.curves[name].knots = choose_knots(visited[name], intervals, name);
+    request.curves[name].knots = choose_knots(std::move(visited), intervals, name);
   }
 }
 

@@ -22,7 +22,9 @@ namespace misfit {
 /// nothing is visited.
 [[nodiscard]] std::vector<double> choose_knots(std::vector<double> visited, int intervals, const std::string& curve);
 
-/// Fills knots of all curves of the request that have none, from the visited ranges in all experiments.
+/// Fills knots of all curves of the request that have none, from the visited ranges in all experiments. Where the channels do not show the
+/// quantity move, states that none of them shows are those of the model from where it begins, at its starting values (a charge that a
+/// known current changes).
 void choose_all_knots(ModelRequest& request, const Registry& registry, const std::vector<Signals>& experiments, int intervals);
 
 /// Estimates for the report from free parameters with joint covariance: parameters by name, curves and derived curves with bands on a grid
