@@ -261,7 +261,7 @@ class Reader {
     constexpr double gap_in_steps = 1.5;
     const auto gaps = std::count_if(steps.begin(), steps.end(), [&](double s) { return s > gap_in_steps * usual; });
     if (gaps > 0)
-      out_.notes.push_back(std::to_string(gaps) + " gaps in time, the longest " +
+      out_.notes.push_back((gaps == 1 ? "1 gap in time, of " : std::to_string(gaps) + " gaps in time, the longest ") +
                            format_value(*std::max_element(steps.begin(), steps.end())) + " s");
   }
 

@@ -16,6 +16,7 @@
 #include "misfit/model/whole_steps.h"
 #include "misfit/workflow/assess/assess.h"
 #include "misfit/workflow/assess/without.h"
+#include "misfit/workflow/estimate/estimate.h"
 #include "misfit/workflow/ladder.h"
 
 namespace misfit {
@@ -28,7 +29,8 @@ struct OnLadder {
   Candidate from;
   std::vector<Candidate> alternatives;
   bool width_freed = false;
-  int searched_with = -1;  ///< of a curve of unknown form: the last rung beside which a named effect was looked for in its place
+  bool may_be_finer = true;  ///< of a curve of unknown form: with more knots
+  int searched_with = -1;    ///< of a curve of unknown form: the last rung beside which a named effect was looked for in its place
 };
 
 /// Those of the round that were refitted and explain more than half of what the accepted one does.
@@ -57,6 +59,18 @@ Candidate as_in(const Session& session, Candidate candidate) {
     return std::none_of(model.parameters.begin(), model.parameters.end(), [&](const Parameter& p) { return p.name == held.first; });
   });
   return candidate;
+}
+
+/// One more in the middle of each interval. Empty: there would be too many to be fitted.
+std::vector<double> twice_as_many(const std::vector<double>& knots) {
+  constexpr std::size_t most = 65;
+  std::vector<double> out;
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    if (i > 0) out.push_back(0.5 * (knots[i - 1] + knots[i]));
+    out.push_back(knots[i]);
+  }
+  if (out.size() > most) out.clear();
+  return out;
 }
 
 std::string in_words(const std::string& name, const Without& without, double families) {
@@ -149,12 +163,52 @@ class Extension {
     const auto& own = ladder_.last().model.request.effects;
     if (std::any_of(own.begin(), own.end(),
                     [&, kind = effect, at = roles](const EffectRequest& e) { return e.kind == kind && e.roles == at; }))
-      return false;  // its knots are too far apart for what is left, or its place is another
+      return refine_curve(effect, roles);  // its knots are too far apart for what is left, or its place is another
     const std::optional<Candidate> curve = predict_effect(ladder_.last(), effect, {roles});
     if (!curve || has_left(*curve)) return false;
     if (add_tentatively(*curve, {})) return true;
     ladder_.gained_too_little(effect_at(effect, roles), why_off_);
     return false;
+  }
+
+  /// The curve that is on the ladder again with twice as many knots, where it then explains clearly more of the fitted data and no less of
+  /// what is held out; else as it was. False: that is known, or it was not added here.
+  bool refine_curve(const std::string& effect, const std::map<std::string, std::string>& roles) {
+    constexpr double clearly = 10.0;
+    const auto on =
+        std::find_if(added_.begin(), added_.end(), [&](const OnLadder& a) { return a.from.effect == effect && a.from.roles == roles; });
+    if (on == added_.end() || !on->may_be_finer) return false;
+    const auto k = static_cast<std::size_t>(on - added_.begin());
+    const Rung before = rung_of(on->rung);
+    Candidate finer = on->from;
+    const Candidate coarse = finer;
+    finer.knots = twice_as_many(knots_of(on->name));
+    if (finer.knots.empty()) return false;
+    ladder_.root().note(on->name + " once more, with twice as many knots: something is left that depends on the same");
+    if (!rebuild_without(k, finer, true)) return true;
+    const Rung& after = rung_of(added_[k].rung);
+    if (after.loglik > before.loglik + clearly && after.validation_loglik.value_or(0.0) >= before.validation_loglik.value_or(0.0))
+      return true;
+    ladder_.root().note(added_[k].name + ": more knots explain no more: it has those from before");
+    if (rebuild_without(k, coarse, true)) added_[k].may_be_finer = false;
+    return true;  // what is left beside it is to be said
+  }
+
+  [[nodiscard]] const Rung& rung_of(int id) const {
+    const auto& rungs = ladder_.ladder().rungs;
+    return *std::find_if(rungs.begin(), rungs.end(), [id](const Rung& r) { return r.id == id; });
+  }
+
+  /// Of the curve of an effect of the last model [SI].
+  [[nodiscard]] std::vector<double> knots_of(const std::string& effect) {
+    const Model model = prepare(ladder_.last()).model;
+    for (const BoundEffect& bound : model.effects) {
+      if (bound.name != effect) continue;
+      for (const BoundCoefficient& c : bound.coefficients) {
+        if (c.curve >= 0) return model.curves[c.curve].spline.breakpoints();
+      }
+    }
+    return {};
   }
 
   /// What discovery does not accept as it is. False: it cannot be fitted, or the rung is off again, as why_not_kept says.
