@@ -121,8 +121,25 @@ TEST(LogPrior, IsThatOfTheEstimate) {
   EXPECT_NEAR(log_prior(estimate.model, estimate.penalties), estimate.objective - estimate.loglik, 1e-6);
 }
 
+/// The largest change of a coefficient of the curves of `without`, in its sigmas.
+double change_of_curves(const FilterEstimate& without, const FilterEstimate& with) {
+  double out = 0.0;
+  const std::vector<int> free = without.model.free_parameters();
+  for (const Curve& curve : without.model.curves) {
+    const int first = with.model.find_curve(curve.name)->first;
+    for (int j = 0; j < curve.spline.size(); ++j) {
+      const auto column = std::find(free.begin(), free.end(), curve.first + j) - free.begin();
+      const double change = with.model.parameters[static_cast<std::size_t>(first + j)].value -
+                            without.model.parameters[static_cast<std::size_t>(curve.first + j)].value;
+      out = std::max(out, std::abs(change) / std::sqrt(without.covariance(column, column)));
+    }
+  }
+  return out;
+}
+
 /// A viscosity that cannot be negative beside a damping curve that can stand in for it: nothing is known of the one alone, and nothing else
-/// changes for it.
+/// changes for it. The search ends somewhere in a flat valley: over seeds 8 to 23 the curves changed by 0.75 sigma at most, the objective
+/// by -0.9 to 0.03, and it could still rise by 0.67 (which of these, the last digits of a sum decide).
 TEST(EstimateFilter, WhatCanStandInForAnotherChangesNothingElse) {
   for (unsigned seed : {8U, 9U, 10U}) {
     const std::vector<Signals> flights = {fly(15.0, seed)};
@@ -132,9 +149,10 @@ TEST(EstimateFilter, WhatCanStandInForAnotherChangesNothingElse) {
     const FilterEstimate beside = fitted(request, flights);
     EXPECT_TRUE(beside.converged) << seed << ": " << beside.message;
     EXPECT_TRUE(beside.nonlinear.empty()) << seed << ": two dampings that can stand in for each other are no roughness";
-    EXPECT_NEAR(beside.objective, without.objective, 0.5) << seed;
+    EXPECT_LT(change_of_curves(without, beside), 1.0) << seed;
+    EXPECT_NEAR(beside.objective, without.objective, 1.0) << seed;
     EXPECT_LT(without.newton_decrement.value(), 0.5) << seed;
-    EXPECT_LT(beside.newton_decrement.value(), 0.5) << seed;
+    EXPECT_LT(beside.newton_decrement.value(), 1.0) << seed;
   }
 }
 

@@ -141,7 +141,8 @@ std::string estimates_of(const std::vector<Fit>& fits) {
 }
 
 /// The curve as a model without the effects of the last rungs has it.
-void add_curve_below(int model, const std::vector<Fit>& fits, const std::pair<std::string, std::string>& curve, report::Panel& panel) {
+void add_curve_below(int model, const std::string& colour, const std::vector<Fit>& fits, const std::pair<std::string, std::string>& curve,
+                     report::Panel& panel) {
   const CurveEstimate* found = nullptr;
   std::string method;
   for (const Fit& fit : fits) {
@@ -153,7 +154,7 @@ void add_curve_below(int model, const std::vector<Fit>& fits, const std::pair<st
   report::Series series{fmt::format("model_{}", model),
                         fmt::format("model {}, {}", model, method),
                         report::Style::dotted,
-                        report::grey,
+                        colour,
                         display_values(found->x, found->of_unit),
                         display_values(found->value, found->unit),
                         {},
@@ -243,7 +244,10 @@ std::string curves_view(const std::vector<Place>& places, std::size_t model, con
   const auto names = report::curve_names(fits, references);
   for (const auto& curve : names) {
     report::Figure figure = report::curve_figure(curve.first, curve.second, fits, references);
-    for (std::size_t k = 0; k < model; ++k) add_curve_below(places[k].id, below[k], curve, figure.panels.front());
+    for (std::size_t k = 0; k < model; ++k) {
+      const std::string colour = k + 1 == model ? report::grey : report::palette(fits.size() + k);  // the last one before in grey
+      add_curve_below(places[k].id, colour, below[k], curve, figure.panels.front());
+    }
     figures.push_back(json_of(figure));
   }
   for (const Fit& fit : fits) {

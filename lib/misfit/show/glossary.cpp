@@ -20,7 +20,9 @@ Glossary main_glossary() {
        "the force that the model lacks, estimated as a function of one quantity or two, and the p with which chance alone gives as much"},
       {"fixed", "of a parameter: not estimated (free = false), but kept at its value"},
       {"held out", "of data: kept out of the estimation (validation), to test the model on them"},
-      {"drop", "2 log likelihood ratio: by how much an effect improves the fit; chance gives about 1 per parameter"},
+      {"drop",
+       "2 log likelihood ratio: by how much an effect improves the fit (predicted: by one step of a linearised model; actual: refitted); "
+       "chance gives about 1 per parameter"},
       {"held-out gain",
        "gain of the log likelihood (not doubled), parameters uncertain, of the data that are held out: above 0, the effect predicts "
        "better"},
