@@ -85,6 +85,12 @@ TEST(Decompositions, SolveWhatCanBeSolved) {
   EXPECT_FALSE(solve(two_by_two(1, 0, 0, 1e-6), b, 1e-3)) << "its condition is 1e-6";
 }
 
+TEST(Decompositions, GiveTheSmallestOfManySolutions) {
+  const MatrixXd A = two_by_two(1, 1, 1, 1);  // x + y = 2: (1, 1) is nearest to 0
+  EXPECT_TRUE(minimum_norm_solve(A, VectorXd::Constant(2, 2.0)).isApprox(VectorXd::Ones(2), 1e-14));
+  EXPECT_TRUE(pseudoinverse(A).isApprox(0.25 * A, 1e-14));
+}
+
 TEST(Decompositions, HaveARootOfAPositiveDefiniteMatrixAlone) {
   const MatrixXd A = two_by_two(4, 2, 2, 5);
   ASSERT_TRUE(cholesky(A));

@@ -50,7 +50,7 @@ Eigen::MatrixXd reduced(const NormalEquations& problem, const Eigen::VectorXd& s
   if (states == 0) return N;
   Eigen::MatrixXd C(n, states);
   for (Eigen::Index a = 0; a < n; ++a) C.row(a) = all.row(columns[a].at).tail(states);
-  return N - C * all.bottomRightCorner(states, states).completeOrthogonalDecomposition().solve(C.transpose());
+  return N - C * minimum_norm_solve(all.bottomRightCorner(states, states), C.transpose());
 }
 
 /// "a and b: only their product acts", from the relative changes of them that leave all residuals unchanged.

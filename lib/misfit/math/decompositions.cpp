@@ -60,6 +60,12 @@ std::optional<Eigen::MatrixXd> solve(const Eigen::MatrixXd& A, const Eigen::Matr
   return lu.solve(B);
 }
 
+Eigen::MatrixXd minimum_norm_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return A.completeOrthogonalDecomposition().solve(B);
+}
+
+Eigen::MatrixXd pseudoinverse(const Eigen::MatrixXd& A) { return A.completeOrthogonalDecomposition().pseudoInverse(); }
+
 std::optional<Eigen::MatrixXd> cholesky(const Eigen::MatrixXd& A) {
   const Eigen::LLT<Eigen::MatrixXd> factor(A);
   if (factor.info() != Eigen::Success || !A.allFinite()) return std::nullopt;

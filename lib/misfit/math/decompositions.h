@@ -48,6 +48,10 @@ struct RightSingular {
 /// A⁻¹ B by LU with full pivoting; none unless the estimated reciprocal condition of A is above `least_condition`.
 [[nodiscard]] std::optional<Eigen::MatrixXd> solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double least_condition);
 
+/// Of the X with the smallest |A X − B| the smallest one, also of a singular A (complete orthogonal decomposition); B = I: pseudoinverse.
+[[nodiscard]] Eigen::MatrixXd minimum_norm_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+[[nodiscard]] Eigen::MatrixXd pseudoinverse(const Eigen::MatrixXd& A);
+
 /// Lower L with L Lᵀ = A; none unless A is positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> cholesky(const Eigen::MatrixXd& A);
 

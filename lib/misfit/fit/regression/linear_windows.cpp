@@ -84,7 +84,7 @@ SquaresForm squares_of_window(const WindowedRecord& record, const WindowedRecord
   }
   const Eigen::MatrixXd normal = known.transpose() * known;
   const Eigen::VectorXd right = known.transpose() * y;
-  const Eigen::MatrixXd start = normal.bottomRightCorner(order, order).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd start = pseudoinverse(normal.bottomRightCorner(order, order));
   const Eigen::MatrixXd mixed = normal.topRightCorner(m, order);
   out.matrix = normal.topLeftCorner(m, m) - mixed * start * mixed.transpose();
   out.right = right.head(m) - mixed * start * right.tail(order);
@@ -111,7 +111,7 @@ Eigen::VectorXd SquaresForm::solve(const std::vector<Eigen::Index>& terms) const
     of[i] = right[terms[i]];
     for (Eigen::Index j = 0; j < n; ++j) part(i, j) = matrix(terms[i], terms[j]);
   }
-  const Eigen::VectorXd solved = part.completeOrthogonalDecomposition().solve(of);
+  const Eigen::VectorXd solved = minimum_norm_solve(part, of);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(right.size());
   for (Eigen::Index i = 0; i < n; ++i) out[terms[i]] = solved[i];
   return out;

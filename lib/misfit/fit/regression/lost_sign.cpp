@@ -1,11 +1,11 @@
 #include "misfit/fit/regression/lost_sign.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "misfit/math/decompositions.h"
 #include "misfit/math/statistics.h"
 #include "misfit/sim/trajectory.h"
 
@@ -95,7 +95,7 @@ void fit_coefficients(const SignRegression& of, SignedFit& fit) {
     right += y * x;
     total += y * y;
   }
-  fit.coefficients = normal.completeOrthogonalDecomposition().solve(right);
+  fit.coefficients = minimum_norm_solve(normal, right);
   constexpr double rounding = 1e-10;  // of the squares: what is less says nothing
   fit.squares = std::max(total - right.dot(fit.coefficients), rounding * total);
 }
