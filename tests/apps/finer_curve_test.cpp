@@ -24,23 +24,7 @@ class SlideWithAStop {
       rows += row;
     }
     folder_.write("slide.csv", rows);
-    folder_.write("model.toml", R"toml([system]
-doc = "a slide on a spring"
-[states]
-x = { unit = "m", scale = 0.05 }
-v = { unit = "m/s", scale = 0.2, rate_of = "x" }
-[inputs]
-F = { unit = "N", hold = "zero_order" }
-[parameters]
-gain = { unit = "1/kg", value = 0.4, free = true }
-k = { unit = "1/s^2", value = 25.0, free = true }
-c = { unit = "1/s", value = 3.0, free = true }
-[equations]
-x = "v"
-v = "gain*F - k*x - c*v"
-[outputs]
-x = { unit = "m", noise = 2e-4 }
-)toml");
+    folder_.write("model.toml", misfit::testing_models::slide_of_unknown_mass_text);
     folder_.write("study.toml", R"toml([study]
 name = "slide"
 question = "What does it lack?"

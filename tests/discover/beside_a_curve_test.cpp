@@ -17,28 +17,12 @@ namespace {
 
 using namespace testing_models;
 
-/// The force's factor is free: an offset and a scale of x, the factor and the curve of x cannot be told apart.
-const std::string text = R"toml(
-[states]
-x = { unit = "m", scale = 0.05 }
-v = { unit = "m/s", scale = 0.2, rate_of = "x" }
-[inputs]
-F = { unit = "N", hold = "zero_order" }
-[parameters]
-gain = { unit = "1/kg", value = 0.5, free = true }
-c = { unit = "1/s", value = 3.0, free = true }
-[equations]
-x = "v"
-v = "gain*F - c*v"
-[outputs]
-x = { unit = "m", noise = 2e-4 }
-)toml";
-
 TEST(BesideACurve, AStopBetweenItsKnotsIsNoErrorOfTheSensor) {
   const auto stop = [](double x) { return -150.0 * std::max(x - 0.063, 0.0); };
   const std::vector<Signals> signals = {slide({.samples = 2500, .force = 6.0, .seed = 4}, stop)};
-  const auto known = registry_with(text);
+  const auto known = registry_with(slide_of_unknown_mass_text);
   ModelRequest request = request_of("text", {effect("unknown_force", {{"of", "x"}, {"port", "dv/dt"}})});
+  request.parameters["k"].free = false;  // the curve takes over what it does
   choose_all_knots(request, *known, signals, 10);
   const FilterEstimate estimate = estimate_filter(assemble(request, *known), {}, signals);
   const Discovery found = discover({estimate, request, *known, signals});

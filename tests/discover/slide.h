@@ -26,6 +26,24 @@ v = "(F - k*x - c*v)/m"
 x = { unit = "m", noise = 2e-4 }
 )toml";
 
+/// The same slide of unknown mass: an offset and a scale of x, `gain` and a curve of x as a force cannot be told apart.
+inline const std::string slide_of_unknown_mass_text = R"toml(
+[states]
+x = { unit = "m", scale = 0.05 }
+v = { unit = "m/s", scale = 0.2, rate_of = "x" }
+[inputs]
+F = { unit = "N", hold = "zero_order" }
+[parameters]
+gain = { unit = "1/kg", value = 0.4, free = true }
+k = { unit = "1/s^2", value = 25.0, free = true }
+c = { unit = "1/s", value = 3.0, free = true }
+[equations]
+x = "v"
+v = "gain*F - k*x - c*v"
+[outputs]
+x = { unit = "m", noise = 2e-4 }
+)toml";
+
 struct SlideRecord {
   int samples = 1500;
   double force = 4.0;  ///< [N] sigma of F, which jumps every 0.8 s

@@ -46,7 +46,9 @@ double folded(double value, const Curve& curve) { return curve.spline.parity() =
 
 std::vector<double> folded(const RowMatrix& visited, const Curve& curve) {
   std::vector<double> out;
-  for (const double value : visited.col(curve.quantity)) out.push_back(folded(value, curve));
+  for (const double value : visited.col(curve.quantity)) {
+    if (std::isfinite(value)) out.push_back(folded(value, curve));
+  }
   return out;
 }
 

@@ -174,7 +174,7 @@ class Extension {
   /// The curve that is on the ladder again with twice as many knots, where it then explains clearly more of the fitted data and no less of
   /// what is held out; else as it was. False: that is known, or it was not added here.
   bool refine_curve(const std::string& effect, const std::map<std::string, std::string>& roles) {
-    constexpr double clearly = 10.0;
+    constexpr double clearly = 10.0, for_each_knot = 1.0;
     const auto on =
         std::find_if(added_.begin(), added_.end(), [&](const OnLadder& a) { return a.from.effect == effect && a.from.roles == roles; });
     if (on == added_.end() || !on->may_be_finer) return false;
@@ -182,12 +182,14 @@ class Extension {
     const Rung before = rung_of(on->rung);
     Candidate finer = on->from;
     const Candidate coarse = finer;
-    finer.knots = twice_as_many(knots_of(on->name));
+    const std::vector<double> knots = knots_of(on->name);
+    finer.knots = twice_as_many(knots);
     if (finer.knots.empty()) return false;
+    const double needed = clearly + for_each_knot * static_cast<double>(finer.knots.size() - knots.size());
     ladder_.root().note(on->name + " once more, with twice as many knots: something is left that depends on the same");
     if (!rebuild_without(k, finer, true)) return true;
     const Rung& after = rung_of(added_[k].rung);
-    if (after.loglik > before.loglik + clearly && after.validation_loglik.value_or(0.0) >= before.validation_loglik.value_or(0.0))
+    if (after.loglik > before.loglik + needed && after.validation_loglik.value_or(0.0) >= before.validation_loglik.value_or(0.0))
       return true;
     ladder_.root().note(added_[k].name + ": more knots explain no more: it has those from before");
     if (rebuild_without(k, coarse, true)) added_[k].may_be_finer = false;
