@@ -98,7 +98,7 @@ TEST(FilterErrorOnHardData, TooFewSamplesAreRefusedInWords) {
 }
 
 TEST(FilterErrorOnHardData, ATrackOfPureNoiseEndsInWords) {
-  const ShortFlight study("parachute_spherical", 10.0);
+  const ShortFlight study("parachute_spherical", 6.0);
   unsigned state = 1;
   study.change_rows("track.csv", [&](std::size_t, const std::vector<std::string>& cells) {
     const auto noise = [&] { return std::to_string(static_cast<int>((state = state * 1664525U + 1013904223U) >> 16U) % 400 - 200); };

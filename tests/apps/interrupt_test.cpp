@@ -88,7 +88,7 @@ class InRefits : public testing::Test {
   [[nodiscard]] std::vector<std::string> words(const std::string& out) const {
     return {"discover", study_.path("study.toml").string(), "--out", study_.path(out).string(), "--threads", "1"};
   }
-  const ShortFlight study_{"parachute_spherical", 20.0};
+  const OscillatorStudy study_;
 };
 
 TEST_F(InRefits, GoesOnToTheSameAnswer) {

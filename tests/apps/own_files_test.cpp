@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <thread>
 
 #include "tests/apps/oscillator_study.h"
@@ -132,22 +133,27 @@ TEST(DamagedResult, IsMadeAgainAndSaid) {
   const std::vector<std::string> words{"run", study.path("").string()};
   ASSERT_EQ(program::run(words).status, 0);
   const auto whole = results_in(study.path("out"));
-  for (const char* name :
-       {"run.json", "resolved.toml", "report.html", "compare.json", "candidates.json", "discovery.json", "diagnosis.json",
-        "missing_force.csv", "fit/output_error/fit.json", "fit/filter_error/prediction.csv", "figures/motion_output_error_steps_y.svg"}) {
+  enum class Damage { empty, cut_short, altered };
+  const auto repairs = [&](const std::string& name, Damage damage) {
     const fs::path file = study.path("out") / name;
-    const std::string before = content(file);
-    ASSERT_FALSE(before.empty()) << name;
-    std::string edited = before;
-    edited[edited.size() / 2] = edited[edited.size() / 2] == '1' ? '2' : '1';
-    for (const std::string& text : {std::string(), before.substr(0, before.size() / 2), edited}) {
-      std::ofstream(file, std::ios::binary | std::ios::trunc) << text;
-      const Outcome again = program::run(words);
-      EXPECT_EQ(again.status, 0) << name << ": " << again.err;
-      EXPECT_THAT(again.err, HasSubstr("again")) << name;
-      EXPECT_TRUE(differences(whole, results_in(study.path("out"))).empty()) << name;
-    }
-  }
+    std::string text = content(file);
+    ASSERT_FALSE(text.empty()) << name;
+    char& middle = text[text.size() / 2];
+    middle = middle == '1' ? '2' : '1';
+    if (damage != Damage::altered) text.resize(damage == Damage::empty ? 0 : text.size() / 2);
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << text;
+    const Outcome again = program::run(words);
+    EXPECT_EQ(again.status, 0) << name << ": " << again.err;
+    EXPECT_THAT(again.err, HasSubstr("again")) << name;
+    EXPECT_TRUE(differences(whole, results_in(study.path("out"))).empty()) << name;
+  };
+  constexpr std::array kinds = {Damage::empty, Damage::cut_short, Damage::altered};
+  for (const Damage damage : kinds) repairs("run.json", damage);
+  int next = 0;
+  for (const char* name :
+       {"resolved.toml", "report.html", "compare.json", "candidates.json", "discovery.json", "diagnosis.json", "missing_force.csv",
+        "fit/output_error/fit.json", "fit/filter_error/prediction.csv", "figures/motion_output_error_steps_y.svg"})
+    repairs(name, kinds[next++ % kinds.size()]);
 }
 
 }  // namespace

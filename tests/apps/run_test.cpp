@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/apps/oscillator_study.h"
 #include "tests/apps/program.h"
 #include "tests/report/html_faults.h"
 
@@ -122,19 +123,15 @@ TEST(RunOnAMotor, FindsAddsAndShowsTheFrictionThatItsModelLacks) {
     EXPECT_LT(std::abs(amplitude.get<double>()), 500.0) << "a force of the size of the friction, not what the drag makes up for";
 }
 
-TEST(RunOnAMotor, SearchesWhereThatIsAskedThoughTheStudyNamesOutputErrorAlone) {
-  const StudyCopy study("dc_motor");
-  std::string text = content(study.path("study.toml"));
-  const std::string methods = "methods = [";
-  const std::size_t from = text.find(methods), to = text.find(']', from);
-  ASSERT_NE(from, std::string::npos);
-  study.write("study.toml", text.replace(from, to - from, methods + "\"output_error\""));
-  const Outcome outcome = study.run("run", {"--auto"});
+TEST(RunOnAnOscillator, SearchesWhereThatIsAskedThoughTheStudyNamesOutputErrorAlone) {
+  const OscillatorStudy study;
+  study.write("study.toml", without(content(study.path("study.toml")), ", \"filter_error\""));
+  const Outcome outcome = run({"run", study.path("study.toml").string(), "--auto"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json ladder = study.result("ladder.json");
+  const json ladder = json::parse(content(study.path("out/ladder.json")));
   ASSERT_EQ(ladder.size(), 2U) << outcome.out;
   EXPECT_EQ(ladder[1].at("added"), "coulomb_friction");
-  EXPECT_EQ(study.result("verdict.json").at("verdict"), "effect_added");
+  EXPECT_EQ(json::parse(content(study.path("out/verdict.json"))).at("verdict"), "effect_added");
   expect_parts(outcome.out, {"  output_error ", "  filter_error ", "  diagnose ", "  discover "});
 }
 

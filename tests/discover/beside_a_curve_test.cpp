@@ -19,7 +19,7 @@ using namespace testing_models;
 
 TEST(BesideACurve, AStopBetweenItsKnotsIsNoErrorOfTheSensor) {
   const auto stop = [](double x) { return -150.0 * std::max(x - 0.063, 0.0); };
-  const std::vector<Signals> signals = {slide({.samples = 2500, .force = 6.0, .seed = 4}, stop)};
+  const std::vector<Signals> signals = {slide({.samples = 1500, .force = 6.0, .seed = 4}, stop)};
   const auto known = registry_with(slide_of_unknown_mass_text);
   ModelRequest request = request_of("text", {effect("unknown_force", {{"of", "x"}, {"port", "dv/dt"}})});
   request.parameters["k"].free = false;  // the curve takes over what it does

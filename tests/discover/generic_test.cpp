@@ -19,13 +19,21 @@ Discovery discovered(ModelRequest model, const std::vector<std::string>& free, c
   return discover({estimate, model, registry(), signals});
 }
 
-Discovery in_cart(const std::string& hidden, const Values& values) {
+/// A minute of the cart, or 40 of the tanks: enough for what is hidden here, and half the time of a longer record.
+constexpr std::size_t short_record = 1200;
+
+Signals short_record_of_cart(const std::vector<EffectRequest>& hidden, const Values& values) {
+  return record_of_cart(hidden, values, 41, {}, short_record);
+}
+
+Discovery in_cart(const std::string& hidden, const Values& values, std::size_t samples = short_record) {
   const std::vector<EffectRequest> more = hidden.empty() ? std::vector<EffectRequest>{} : std::vector<EffectRequest>{effect(hidden)};
-  return discovered(cart({effect("viscous_friction")}), {"stiffness"}, record_of_cart(more, values));
+  return discovered(cart({effect("viscous_friction")}), {"stiffness"}, record_of_cart(more, values, 41, {}, samples));
 }
 
 Discovery in_tanks(const std::vector<EffectRequest>& hidden, const Values& values) {
-  return discovered(tanks({}), {"drain_1", "drain_2", "pump"}, record(tanks(hidden), values, 2.0, -8.0, {2e-3, 2e-3}, 42));
+  return discovered(tanks({}), {"drain_1", "drain_2", "pump"},
+                    record(tanks(hidden), values, 2.0, -8.0, {2e-3, 2e-3}, 42, {}, short_record));
 }
 
 void expect_first(const Discovery& found, const std::string& effect, const std::string& parameter, double value, double share) {
@@ -73,8 +81,16 @@ TEST(DiscoverGeneric, FindsAPlayWithoutALagBesideIt) {
   EXPECT_LT(found.candidates.front().parameters.at("backlash_tau").value, 0.02);
 }
 
+TEST(DiscoverGeneric, FindsAStopOnEitherSide) {
+  const Discovery below = in_cart("lower_stop", {{"stop_stiffness", 20.0}, {"edge", -0.5}});
+  expect_first(below, "lower_stop", "edge", -0.5, 0.05);
+  EXPECT_NEAR(below.candidates.front().parameters.at("stop_stiffness").value, 20.0, 1.0);
+  const Discovery above = in_cart("upper_stop", {{"stop_stiffness", 20.0}, {"edge", 0.5}});
+  expect_first(above, "upper_stop", "edge", 0.5, 0.05);
+}
+
 TEST(DiscoverGeneric, FindsADampingThatAnInputSets) {
-  const Signals recorded = record_of_cart({effect("bilinear", {{"factor", "v"}})}, {{"product", -0.05}, {"neutral", 0.0}});
+  const Signals recorded = short_record_of_cart({effect("bilinear", {{"factor", "v"}})}, {{"product", -0.05}, {"neutral", 0.0}});
   const Discovery found = discovered(cart({effect("viscous_friction")}), {"stiffness"}, recorded);
   expect_first(found, "bilinear", "product", -0.05, 0.1);
   EXPECT_EQ(found.candidates.front().roles.at("factor"), "v");
@@ -98,7 +114,7 @@ TEST(DiscoverGeneric, FindsTheWholeLagOfAnActuator) {
 
 /// The record of the cart whose position is stamped `shift` samples early (what it was later) or late.
 Signals with_shifted_position(int shift) {
-  Signals s = record_of_cart({}, {});
+  Signals s = short_record_of_cart({}, {});
   std::vector<double>& position = s.measured[0].values;
   if (shift > 0) {
     position.erase(position.begin(), position.begin() + shift);
@@ -162,7 +178,8 @@ TEST(DiscoverGeneric, NamesAHiddenPeriodicForcingWithItsFrequency) {
 
 /// In 125 s the phase departs by 0.2 periods from that of any constant frequency.
 TEST(DiscoverGeneric, LetsAFrequencyDriftThatDrifts) {
-  const Discovery found = in_cart("periodic_forcing", {{"cosine", 1.0}, {"sine", 0.5}, {"frequency", 1.3}, {"frequency_drift", 2e-4}});
+  const Discovery found =
+      in_cart("periodic_forcing", {{"cosine", 1.0}, {"sine", 0.5}, {"frequency", 1.3}, {"frequency_drift", 2e-4}}, 2500);
   expect_first(found, "periodic_forcing", "frequency_drift", 2e-4, 0.1);
   const Candidate& first = found.candidates.front();
   EXPECT_NEAR(first.parameters.at("frequency").value, 1.3, 1e-3) << "at t = 0";
@@ -182,7 +199,7 @@ TEST(DiscoverGeneric, AFrequencyThatDoesNotDriftIsFixed) {
 /// Noise before the rounding smooths the sawtooth that it adds to a prediction, to 0.6 of the whole here; as intervals the measurements are
 /// what they are.
 TEST(DiscoverGeneric, NamesARoundingAfterNoise) {
-  Signals recorded = record_of_cart({}, {});
+  Signals recorded = short_record_of_cart({}, {});
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   constexpr double step = 0.04, noise_of_step = 0.15;

@@ -23,7 +23,7 @@ double pull(double x, double size) {
 }
 
 Signals beside_a_magnet(double size, unsigned seed) {
-  return slide({.samples = 3000, .force = 8.0, .seed = seed}, [size](double x) { return pull(x, size); });
+  return slide({.samples = 1800, .force = 8.0, .seed = seed}, [size](double x) { return pull(x, size); });
 }
 
 TEST(AForceAtOnePlaceOfTheWay, IsFoundAsACurveOfIt) {

@@ -22,7 +22,7 @@ using Actuator = std::function<double(double, double)>;
 /// What the system does with `hidden` in it: an input held at random for 20 samples (recorded as asked for), small random pushes, all
 /// states read with white noise.
 inline Signals record(const ModelRequest& request, const Values& values, double step, double input, const std::vector<double>& noise,
-                      unsigned seed, const Actuator& actuator = {}) {
+                      unsigned seed, const Actuator& actuator = {}, std::size_t samples = 2500) {
   Model truth = assemble(request, registry());
   for (const auto& [name, value] : values) set(truth, name, value);
   const SystemSpec& spec = truth.system->spec();
@@ -32,7 +32,7 @@ inline Signals record(const ModelRequest& request, const Values& values, double 
   for (const auto& o : spec.outputs) s.measured.push_back({o.name, o.unit, {}});
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  constexpr std::size_t samples = 2500, held = 20;
+  constexpr std::size_t held = 20;
   double u = 0.0;
   for (std::size_t k = 0; k < samples; ++k) {
     if (k % held == 0) u = std::abs(input) * (input < 0.0 ? std::abs(normal(random)) : normal(random));
@@ -57,12 +57,12 @@ inline Signals record(const ModelRequest& request, const Values& values, double 
 
 /// A cart on a spring with viscous friction and what else is asked for.
 inline Signals record_of_cart(const std::vector<EffectRequest>& hidden, const Values& values, unsigned seed = 41,
-                              const Actuator& actuator = {}) {
+                              const Actuator& actuator = {}, std::size_t samples = 2500) {
   ModelRequest truth = cart({effect("viscous_friction")});
   truth.effects.insert(truth.effects.end(), hidden.begin(), hidden.end());
   Values all = values;
   all["viscosity"] = 1.5;
-  return record(truth, all, 0.05, 15.0, {2e-3, 1e-2}, seed, actuator);
+  return record(truth, all, 0.05, 15.0, {2e-3, 1e-2}, seed, actuator, samples);
 }
 
 }  // namespace misfit::testing_records

@@ -192,6 +192,15 @@ TEST(LinearGuess, ASwingWhoseCommandIsLimitedInItsRateIsOfSecondOrder) {
   EXPECT_EQ(guess.order, 2) << guess.why;
 }
 
+/// Of a stop the linear model knows nothing, so that a second order is hardly better than a first; but it rings.
+TEST(LinearGuess, ASwingThatMeetsAStopIsOfSecondOrder) {
+  World world{.step = 0.025, .noise = 1.4e-3, .count = 1600, .hold = 50};
+  const auto push = [](double y, double v, double u) { return 2.4 * u - 15.0 * y - 1.1 * v - 187.5 * std::max(y - 0.21, 0.0); };
+  const LinearGuess guess = guess_linear(world.run(push, true));
+  EXPECT_EQ(guess.order, 2) << guess.why;
+  EXPECT_FALSE(guess.integrates);
+}
+
 TEST(LinearGuess, AMeasuredRateMakesSecondOrderWithoutAPullBackWhereThereIsNone) {
   World world{.step = 0.01, .noise = 0.002};
   GuessData data = world.run([](double, double v, double u) { return 3.0 * u - 1.5 * v + 0.2; }, true);

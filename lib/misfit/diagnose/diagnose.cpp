@@ -87,7 +87,7 @@ std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covarianc
   }
   const std::string otherwise = "as a whole, the model's " + map.port + " depends otherwise on " + map.quantity +
                                 " than the data say, though no range of it stands out by itself";
-  if (!(best.chi2() > 0.0)) return otherwise + ": the values of the map are correlated";
+  if (!(best.chi2() > 0.0)) return otherwise;
   const std::string amount = in_display_unit(std::abs(best.value), map.port_unit, std::sqrt(best.variance)) +
                              (best.value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
                              place(lower_edge(map, best_from), half_step(map), map.quantity_unit) + " and " +
@@ -139,8 +139,8 @@ void say_where_no_force_acts(const SystemSpec& spec, std::vector<ForceMap>& maps
     const bool forced = may_be_forced(spec, index_of(spec.dynamic_ports, map.port));
     force_before = force_before || (forced && !map.sentence.empty());
     if (forced || map.sentence.empty()) continue;
-    map.sentence += force_before ? ", where no force acts: what is missing elsewhere may look like that"
-                                 : ", where no force acts: an error of a sensor may look like that";
+    map.sentence += force_before ? "; no force acts there: it may be the trace of what is missing elsewhere"
+                                 : "; no force acts there: it may be an error of a sensor";
   }
 }
 

@@ -137,6 +137,16 @@ std::optional<LinearGuess> drifting_first_order(const GuessData& data, int lengt
   return out;
 }
 
+/// 0 without a pull back to rest.
+double damping_ratio(const Poles& poles) { return poles.stiffness > 0.0 ? 0.5 * poles.damping / std::sqrt(poles.stiffness) : 0.0; }
+
+/// No lag or delay of a first order looks like that. Hardly damped at all it may be any slow swing that two initial values per window
+/// follow.
+bool rings(double damping_ratio) {
+  constexpr double least = 0.05, most = 0.5;
+  return damping_ratio > least && damping_ratio < most;
+}
+
 /// The best models of either order, and which of the two it is to be. A second order that is overdamped is two first ones, and what its
 /// fast one stands for is for the search to name (a lag, a delay). But what a first order follows with a time constant longer than the
 /// record moves without a pull back (an axis under a motor): there a second order without one is enough if it is a little better, for a lag
@@ -148,14 +158,14 @@ struct Choice {
 
   /// `seconds`: length of the record.
   Choice(const WindowSearch& search, double seconds) : first(simplest(search, 1)), second(simplest(search, 2)) {
-    constexpr double most_damped = 0.9;  // damping ratio
-    const auto is_clearly_better = [&](const Found& found) {
-      constexpr double clearly = 0.7;  // of the mean square: an error lower by a sixth
-      return search.excess(found.mean_square) < clearly * search.excess(first.mean_square);
+    constexpr double clearly = 0.7, rings_clearly = 0.9;  // of the mean square: an error lower by a sixth, by a twentieth
+    constexpr double most_damped = 0.9;
+    const auto leaves_at_most = [&](double share, const Found& found) {
+      return search.excess(found.mean_square) < share * search.excess(first.mean_square);
     };
-    const bool swings = second.poles.damping < 2.0 * most_damped * std::sqrt(second.poles.stiffness) || second.poles.stiffness == 0.0;
-    oscillates = swings && is_clearly_better(second);
-    if (const Found free = search.best(2, false); !oscillates && first.poles.damping * seconds < 1.0 && is_clearly_better(free)) {
+    const double damping = damping_ratio(second.poles);
+    oscillates = damping < most_damped && leaves_at_most(rings(damping) ? rings_clearly : clearly, second);
+    if (const Found free = search.best(2, false); !oscillates && first.poles.damping * seconds < 1.0 && leaves_at_most(clearly, free)) {
       second = free;
       oscillates = true;
     }

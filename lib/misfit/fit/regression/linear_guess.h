@@ -36,11 +36,12 @@ struct LinearGuess {
 /// together lower it by less than 20 %, the initial states of the windows explain the motion, which says nothing of the drivers (a second
 /// order without a pull back to rest follows much by its two initial values alone): then over windows twice as long, and again, as long as
 /// four are left. An input that only windows twice as long need is in the model, too: its effect is slow. Order 2 is taken if the rate is
-/// measured, or if its held-out error is lower than that of order 1 by a sixth (mean square: 0.7) and its damping ratio below 0.9 (two time
-/// constants are one and a lag, which discovery names); without a pull back also where the time constant of order 1 is longer
-/// than the record. Where order 1 with a drift in time halves that of order 1 without, and leaves no more than order 2
-/// without a pull back, it is order 1, without the drift; a pull back to rest if the mean square is 0.5 % higher without. Where nothing can
-/// be fitted: order 1 with a tenth of the record as tau, and every input with the gain σ(y)/σ(u).
+/// measured, or if its held-out error is lower than that of order 1 by a sixth (mean square: 0.7; a twentieth, 0.9, where its damping ratio
+/// is between 0.05 and 0.5) and its damping ratio below 0.9 (two time constants are one and a lag, which discovery names); without a pull
+/// back also where the time constant of order 1 is longer than the record. Where order 1 with a drift in time halves that of order 1
+/// without, and leaves no more than order 2 without a pull back, it is order 1, without the drift; a pull back to rest if the mean square
+/// is 0.5 % higher without. Where nothing can be fitted: order 1 with a tenth of the record as tau, and every input with the gain
+/// σ(y)/σ(u).
 [[nodiscard]] LinearGuess guess_linear(const GuessData& data);
 
 }  // namespace misfit
