@@ -210,5 +210,17 @@ TEST(DiscoverGeneric, NamesARoundingAfterNoise) {
   EXPECT_THAT(found.candidates.front().fixed, testing::ElementsAre("rounded"));
 }
 
+/// A level that keeps the same digits for many samples: densities count that for a random force which follows the stairs, probabilities
+/// do not.
+TEST(DiscoverGeneric, NamesStairsThatARandomForceFollows) {
+  Signals recorded = record(tanks({}), {}, 2.0, -8.0, {2e-3, 2e-3}, 42, {}, short_record);
+  constexpr double step = 0.25;
+  for (double& level : recorded.measured[0].values) level = step * std::round(level / step);
+  const Discovery found = discovered(tanks({}), {"drain_1", "drain_2", "pump"}, recorded);
+  expect_first(found, "sensor_quantisation", "step", step, 1e-6);
+  EXPECT_EQ(found.candidates.front().roles.at("output"), "y1");
+  EXPECT_GT(found.candidates.front().actual_drop, 100.0);
+}
+
 }  // namespace
 }  // namespace misfit

@@ -9,6 +9,7 @@
 #include "misfit/discover/operating_range.h"
 #include "misfit/discover/refit.h"
 #include "misfit/fit/filter/contained_start.h"
+#include "misfit/fit/filter/likelihood_drop.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/does_not_suit.h"
@@ -115,7 +116,7 @@ std::optional<Without> without_effect(const FittedStudy& fitted, const std::stri
     out.estimate = estimate_filter(start, with_weights_of(estimate, start, curve_penalties(start)), fitted.experiments,
                                    options_like(estimate, threads));
     if (!out.estimate.converged || out.estimate.out_of_time) return std::nullopt;
-    out.drop = 2.0 * (estimate.objective - out.estimate.objective);
+    out.drop = likelihood_drop(estimate, out.estimate);
     for (const int index : own_parameters(estimate.model, *effect)) out.parameters += estimate.model.parameters[index].free ? 1 : 0;
     out.p_value = chi_square_tail(std::max(out.drop, 0.0), std::max(out.parameters, 1));
     return out;

@@ -15,6 +15,7 @@
 #include "misfit/discover/unknown_curves.h"
 #include "misfit/discover/verdict.h"
 #include "misfit/fit/filter/contained_start.h"
+#include "misfit/fit/filter/likelihood_drop.h"
 #include "misfit/inference/standard_error.h"
 #include "misfit/model/whole_steps.h"
 
@@ -98,8 +99,7 @@ void note_changes(const ScreeningResult& screening, const Registry& registry, Re
 
 /// With what the exact derivatives leave where a search converged, priors on both sides.
 double drop_of(const FilterEstimate& with, const FilterEstimate& without, const ScreeningResult& screening) {
-  return 2.0 *
-         (with.objective + still_to_gain(with) - without.objective - still_to_gain(without) - prior_of_off(*screening.candidate_model));
+  return likelihood_drop(with, without) + 2.0 * (still_to_gain(with) - still_to_gain(without) - prior_of_off(*screening.candidate_model));
 }
 
 /// A refit that is done, with what is said of it.

@@ -114,8 +114,11 @@ bool RefitWaves::reads_coarse_steps(const RankedCandidate& e) const {
   return on_whole_steps(model, context_.experiments) && are_coarse_steps(model, context_.estimate);
 }
 
-void RefitWaves::refit_where_steps_are_coarse() {
+bool RefitWaves::refit_where_steps_are_coarse() {
   refit_wave({.begin = [&](const RankedCandidate& e) { return reads_coarse_steps(e) ? e.screening : nullptr; }, .name = "_steps"});
+  return std::any_of(ranked_.begin(), ranked_.end(), [&](const RankedCandidate& e) {
+    return e.refit && e.refit->ok && e.refit->partial.empty() && significant(e) && reads_coarse_steps(e);
+  });
 }
 
 /// The model without any effect fitted to other measurements, to which the estimate points; nullopt: it cannot be.

@@ -23,7 +23,8 @@ class RefitWaves {
   /// model that was fitted to sizes is far off. Begun with it fitted to the measurements with signs.
   void refit_where_signs_are_lost();
   /// Outputs that are read in whole steps, where these are coarse: the score of a sawtooth promises little of what reading them so gains.
-  void refit_where_steps_are_coarse();
+  /// True: they are found.
+  bool refit_where_steps_are_coarse();
   /// Of such an output.
   [[nodiscard]] bool reads_coarse_steps(const RankedCandidate& e) const;
   /// Those with a predicted drop above half of the best.

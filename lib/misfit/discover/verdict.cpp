@@ -302,15 +302,16 @@ bool are_coarse_steps(const Model& model, const FilterEstimate& without) {
   const int parameter = step_of_measurements(model.effects.back());
   if (parameter < 0) return false;
   const std::size_t output = model.effects.back().ports.front(), outputs = without.model.outputs();
-  double sum = 0.0, count = 0.0;
+  double sum = 0.0, weights = 0.0;
   for (std::size_t e = 0; e < without.data.size(); ++e) {
+    const FilterTrace& trace = without.traces[e];
     for (std::size_t at = output; at < without.data[e].use.size(); at += outputs) {
       if (without.data[e].use[at] != SampleRole::counted) continue;
-      sum += std::pow(without.traces[e].departure(at), 2);
-      count += 1.0;
+      sum += std::pow(trace.departure(at), 2) / trace.variance(at);
+      weights += 1.0 / trace.variance(at);
     }
   }
-  return std::abs(model.parameters[parameter].value) / std::sqrt(12.0) > most_of * std::sqrt(sum / std::max(count, 1.0));
+  return weights > 0.0 && std::abs(model.parameters[parameter].value) / std::sqrt(12.0) > most_of * std::sqrt(sum / weights);
 }
 
 void add_camera_remarks(const Calibration* calibration, double p_accept, Discovery& out) {

@@ -58,7 +58,8 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// output in whole steps and all measurements that enter the fit are within 0.05 of a step (RMS) from them: step/sqrt(12) as in B. Widrow,
 /// I. Kollar, Quantization Noise (2008), ch. 4, where the output passes through many steps. nullopt: no such effect, or they are not.
 [[nodiscard]] std::optional<std::string> on_whole_steps(const Model& model, const std::vector<Signals>& experiments);
-/// Whether they are in such steps, of which the noise is more than half of what `without` does not predict one sample ahead (RMS).
+/// Whether they are in such steps, of which the noise is more than half of what `without` does not predict one sample ahead (RMS, each
+/// weighted by the inverse variance of its prediction: what an unknown initial state takes to be found is no matter of the sensor).
 [[nodiscard]] bool are_coarse_steps(const Model& model, const FilterEstimate& without);
 
 /// "its threshold = -1.9 K is not among the values of Tc, 3.1 to 22 K" where an edge of the model's last effect lies further than a tenth

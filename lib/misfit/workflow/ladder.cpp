@@ -20,6 +20,7 @@
 #include "misfit/fit/filter/contained_start.h"
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/filter/k_step.h"
+#include "misfit/fit/filter/likelihood_drop.h"
 #include "misfit/fit/filter/predictive_loglik.h"
 
 namespace misfit {
@@ -108,7 +109,7 @@ struct Gain {
   std::optional<double> held_out;
 };
 
-/// 2 [log L(with) − log L(without)] on the same measurements and with the same weights of roughness, each at its own maximum, priors
+/// likelihood_drop() on the same measurements and with the same weights of roughness, each at its own maximum, priors
 /// counted. The child's is looked for from its fit and from the parent's with what is new off, so that it is never below that. The held-out
 /// gain, where the study holds something out, is defined as in discovery: predictive, with the parameters uncertain.
 Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
@@ -127,7 +128,7 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   options.plans = finer_plans(without, *child.estimate);
   const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
   if (without.out_of_time || with.out_of_time) throw TimeLimitReached(Watch::current()->words());
-  Gain gain{2.0 * (with.objective - without.objective), std::nullopt};
+  Gain gain{likelihood_drop(with, without), std::nullopt};
   if (parent.fit.validation_loglik) gain.held_out = predictive_loglik(with) - predictive_loglik(without);
   return gain;
 }
