@@ -1,6 +1,9 @@
 // misfit init: a file of columns becomes a study, or words say why not.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdio>
+#include <numbers>
 #include <random>
 
 #include "tests/apps/program.h"
@@ -80,6 +83,28 @@ TEST(Init, TheOnlyCurrentBesideAPositionDrivesIt) {
   const json found = json::parse(outcome.out);
   EXPECT_EQ(found.at("columns").at(1).at("use"), "input") << found.at("columns").at(1).at("why");
   EXPECT_EQ(found.at("columns").at(2).at("use"), "output");
+}
+
+/// Day and night move the room by little beside what a heater does to the tank in it.
+TEST(Init, ATemperatureThatNothingHelpsToPredictIsThatOfTheSurroundings) {
+  const TemporaryFolder folder;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::uniform_int_distribution<int> level(0, 3);
+  std::string rows = "time[min],heater[W],room[degC],water[degC]\n";
+  double water = 24.0, power = 0.0;
+  for (int i = 0; i < 2400; ++i) {
+    if (i % 80 == 0) power = 100.0 * level(random);
+    const double room = 21.0 + 1.5 * std::sin(2.0 * std::numbers::pi * i / 1440.0);
+    char row[96];
+    std::snprintf(row, sizeof row, "%d,%.0f,%.1f,%.2f\n", i, power, room + 0.05 * normal(random), water + 0.05 * normal(random));
+    rows += row;
+    for (int k = 0; k < 60; ++k) water += (power - 9.0 * (water - room)) / 250e3;
+  }
+  folder.write("tank.csv", rows);
+  const Outcome outcome = run({"init", (folder.path() / "tank.csv").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expect_parts(outcome.out, {"input room", "output water", "nothing else in the file helps to predict it"});
 }
 
 /// What init writes is a study that fits as it stands, and its model follows the swing better than a constant.

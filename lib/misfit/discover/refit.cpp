@@ -343,18 +343,20 @@ int estimated_parameters(const Refit& refit) {
 
 double least_held_out_gain(int parameters) { return 0.5 * parameters; }
 
-double HeldOut::loglik(const FilterEstimate& estimate) const {
+double HeldOut::loglik(const FilterEstimate& estimate, const std::vector<double>& steps) const {
   const bool held_out = std::any_of(without_.traces.begin(), without_.traces.end(), [](const FilterTrace& t) { return t.validated > 0; });
-  if (held_out) return predictive_loglik(estimate);
+  if (held_out) return predictive_loglik(estimate, steps);
   FilterOptions options = options_like(estimate, threads_);
   options.use = without_last_quarter(without_);
   options.verify = false;
   const FilterEstimate shorter = estimate_filter(estimate.model, estimate.penalties, experiments_, options);
   if (shorter.out_of_time) throw TimeLimitReached(Watch::current()->words());
-  return predictive_loglik(shorter);
+  return predictive_loglik(shorter, steps);
 }
 
 double HeldOut::gain(const FilterEstimate& with) {
+  const std::vector<double> steps = steps_of_one_alone(with, without_);
+  if (!steps.empty()) return loglik(with) - loglik(without_, steps);
   if (!before_) before_ = loglik(without_);
   return loglik(with) - *before_;
 }

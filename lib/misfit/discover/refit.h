@@ -119,7 +119,7 @@ class HeldOut {
   [[nodiscard]] double growth_ahead(const FilterEstimate& with);
 
  private:
-  [[nodiscard]] double loglik(const FilterEstimate& estimate) const;
+  [[nodiscard]] double loglik(const FilterEstimate& estimate, const std::vector<double>& steps = {}) const;
 
   const FilterEstimate& without_;
   const std::vector<Signals>& experiments_;

@@ -129,7 +129,7 @@ Gain gain_of(const FilterWork& child, const FilterWork& parent, int threads) {
   const FilterEstimate with = estimate_filter(starts, child.prepared.experiments, options);
   if (without.out_of_time || with.out_of_time) throw TimeLimitReached(Watch::current()->words());
   Gain gain{likelihood_drop(with, without), std::nullopt};
-  if (parent.fit.validation_loglik) gain.held_out = predictive_loglik(with) - predictive_loglik(without);
+  if (parent.fit.validation_loglik) gain.held_out = predictive_loglik(with) - predictive_loglik(without, steps_of_one_alone(with, without));
   return gain;
 }
 

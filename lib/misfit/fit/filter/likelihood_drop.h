@@ -1,8 +1,17 @@
 #pragma once
 
+#include <vector>
+
 #include "misfit/fit/filter/filter_estimate.h"
 
 namespace misfit {
+
+/// Of each output, the whole steps that `with` reads it in and `without` does not, 0: none; empty: that is no output.
+[[nodiscard]] std::vector<double> steps_of_one_alone(const FilterEstimate& with, const FilterEstimate& without);
+
+/// What the log-likelihood of a run over `data` changes by where these outputs are known to a cell of width `steps` instead of exactly
+/// (likelihood_drop()).
+[[nodiscard]] double change_in_cells(const FilterData& data, const FilterTrace& trace, const std::vector<double>& steps);
 
 /// 2 [log L(with) − log L(without)], each at its own maximum, priors counted; of one set of measurements, which is not checked.
 ///

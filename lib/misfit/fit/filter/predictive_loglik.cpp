@@ -3,9 +3,11 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "misfit/fit/filter/likelihood_drop.h"
+
 namespace misfit {
 
-double predictive_loglik(const FilterEstimate& estimate) {
+double predictive_loglik(const FilterEstimate& estimate, const std::vector<double>& steps) {
   const Eigen::Index n = estimate.covariance.rows();
   FilterRunner runner(estimate.forced, true);
   runner.set_parameters(estimate.forced.model.values());
@@ -21,7 +23,7 @@ double predictive_loglik(const FilterEstimate& estimate) {
       if (role == SampleRole::validation) role = SampleRole::counted;
     }
     if (!runner.run(data, estimate.noise, trace, {&jacobian}) || jacobian.J.cols() != n) return estimate.validation_loglik;
-    loglik += trace.loglik;
+    loglik += trace.loglik + change_in_cells(data, trace, steps);
     information += jacobian.J.transpose() * jacobian.J;
     slope += jacobian.J.transpose() * jacobian.r;
   }

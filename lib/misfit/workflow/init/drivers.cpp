@@ -26,6 +26,10 @@ struct Columns {
   }
 };
 
+bool is_in(const ColumnSurvey& c, const char* unit) { return c.unit != "-" && parse_unit(c.unit).same_dimension(parse_unit(unit)); }
+
+/// A temperature that nothing in the file helps to predict is that of the surroundings of another one, even where it moves too little or
+/// too slowly for that to show.
 void take_what_nothing_predicts(RecordingSurvey& survey) {
   const auto longest =
       std::max_element(survey.parts.begin(), survey.parts.end(), [](const Table& a, const Table& b) { return a.rows() < b.rows(); });
@@ -43,8 +47,8 @@ void take_what_nothing_predicts(RecordingSurvey& survey) {
   for (ColumnSurvey* c : outputs) {
     constexpr double by_itself = 0.9;
     const auto moved = [&](const ColumnSurvey* d) {
-      return found[d->name].matters() &&
-             (found[c->name].own > by_itself || influence_on(all.outputs[d->name], {all.outputs[c->name]}).matters());
+      return found[d->name].matters() && (found[c->name].own > by_itself || (is_in(*c, "K") && is_in(*d, "K")) ||
+                                          influence_on(all.outputs[d->name], {all.outputs[c->name]}).matters());
     };
     const auto helped = std::find_if(outputs.begin(), outputs.end(), moved);
     if (found[c->name].matters() || helped == outputs.end()) continue;
@@ -66,8 +70,6 @@ void take_outdoors(RecordingSurvey& survey) {
     out.why = "named like an input";
   }
 }
-
-bool is_in(const ColumnSurvey& c, const char* unit) { return c.unit != "-" && parse_unit(c.unit).same_dimension(parse_unit(unit)); }
 
 /// The only current beside positions, angles and speeds drives them (a motor, a coil), where nothing else in the file does. Under a
 /// controller the motion predicts the current, too, so that the data do not say which drives which.
