@@ -435,6 +435,20 @@ TEST(Verdict, AShapeThatIsKeptIsSaidWithTheEstimates) {
   EXPECT_THAT(c.verdict().added, testing::Contains("coulomb_friction: friction = 5.00 ± 0.50 V/s; width is fixed at 0.5 V"));
 }
 
+TEST(Verdict, WhatIsAddedWithNothingToEstimateHasItsValuesToo) {
+  Case c;
+  c.add_effect();
+  Rung& rung = c.ladder->rungs.back();
+  rung.added = "sensor_quantisation";
+  rung.parameters.clear();
+  rung.new_parameters = 0;
+  rung.kept = "rounded is fixed at 1 and step is fixed at 0.25 V";
+  rung.held_out_gain = -3.0;
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("sensor_quantisation was missing")) << "it is seen in the measurements";
+  EXPECT_THAT(c.verdict().added,
+              testing::Contains(testing::StartsWith("sensor_quantisation: rounded is fixed at 1 and step is fixed at 0.25 V")));
+}
+
 TEST(Verdict, WhatNoLikelihoodComparesIsNotCalledMissing) {
   Case c;
   c.add_effect();

@@ -40,6 +40,8 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
 
 int parameters_added(const Rung& rung) { return rung.new_parameters.value_or(static_cast<int>(rung.parameters.size())); }
 
+bool is_seen_in_measurements(const Rung& rung) { return rung.kept && parameters_added(rung) == 0; }
+
 std::string added_in_words(const Rung& rung) { return effect_at(rung.added, rung.roles.value_or(std::map<std::string, std::string>{})); }
 
 void write_ladder(const std::filesystem::path& path, const Ladder& ladder) { write_json(path, ladder.rungs); }

@@ -51,6 +51,10 @@ struct Ladder {
 /// What the drop of a rung is tested with: its new_parameters, else the number of its parameters.
 [[nodiscard]] int parameters_added(const Rung& rung);
 
+/// Nothing of what was added is estimated: it is seen in the measurements themselves (whole steps), so that what is held out does not speak
+/// against it.
+[[nodiscard]] bool is_seen_in_measurements(const Rung& rung);
+
 /// What was added, in words: its key, and its place where that is not its default one.
 [[nodiscard]] std::string added_in_words(const Rung& rung);
 

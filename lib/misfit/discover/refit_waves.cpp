@@ -260,9 +260,23 @@ bool RefitWaves::was_cut_off(const RankedCandidate& e) const {
   return std::find(unfinished_.begin(), unfinished_.end(), effect_at(e.candidate.effect, e.candidate.roles)) != unfinished_.end();
 }
 
+bool RefitWaves::went_elsewhere(const RankedCandidate& e) const {
+  return e.refit_begun && !e.refit && !e.candidate.absorbed && !was_cut_off(e) && is_nominated(e);
+}
+
+bool RefitWaves::is_nominated(const RankedCandidate& e) const {
+  return std::any_of(nominated_.begin(), nominated_.end(),
+                     [&](const auto* s) { return s->candidate_model == e.screening->candidate_model; });
+}
+
 bool RefitWaves::refit_afresh() {
-  return refit_again(
-      {.wanted = [this](const RankedCandidate& e) { return e.refit && significant(e); }, .as_refitted = true, .name = "_afresh"});
+  const auto wanted = [this](const RankedCandidate& e) { return e.refit ? significant(e) : went_elsewhere(e); };
+  if (!refit_again({.wanted = wanted, .as_refitted = true, .name = "_afresh"})) return false;
+  for (RankedCandidate& e : ranked_) {
+    if (e.refit && is_nominated(e) && !significant_in_screening(e)) require_of_free_run(e);
+  }
+  sort_by_evidence(ranked_);
+  return true;
 }
 
 /// Of the first few that are wanted. False: none gains.
@@ -273,7 +287,7 @@ bool RefitWaves::refit_again(const Again& again) {
   for (auto& e : ranked_) {
     if (chosen.size() == most || !again.wanted(e)) continue;
     chosen.push_back(&e);
-    begin.push_back(again.as_refitted ? as_refitted(*e.screening, e.refit->estimate.model) : *e.screening);
+    begin.push_back(again.as_refitted && e.refit ? as_refitted(*e.screening, e.refit->estimate.model) : *e.screening);
   }
   if (chosen.empty()) return false;
   RefitWork work = work_from(context_.estimate, context_);

@@ -49,7 +49,7 @@ class RefitWaves {
   /// Further waves, where nothing is accepted yet. False: there is none, or none gains.
   bool refit_the_other_nominated();
   bool refit_the_other_significant_ones();
-  /// The first few significant ones: none could be accepted as it is.
+  /// The first few significant ones: none could be accepted as it is; and of those that the free run nominates, what went elsewhere.
   bool refit_afresh();
   void refit_alone(const RankedCandidate& candidate);
 
@@ -79,6 +79,9 @@ class RefitWaves {
   [[nodiscard]] bool significant_in_screening(const RankedCandidate& e) const;
   [[nodiscard]] static bool may_explain_as(const RankedCandidate* most, const RankedCandidate& e, double promised, double most_more);
   [[nodiscard]] bool was_cut_off(const RankedCandidate& e) const;
+  [[nodiscard]] bool is_nominated(const RankedCandidate& e) const;
+  /// Nominated and refitted, but its refit does not explain the free run, or ended nowhere.
+  [[nodiscard]] bool went_elsewhere(const RankedCandidate& e) const;
   bool refit_nominated(const std::vector<const ScreeningResult*>& nominated, const char* name);
   void require_of_free_run(RankedCandidate& e);
   void forget_refit(RankedCandidate& e, const char* why) const;

@@ -44,7 +44,8 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
   std::vector<std::string> out;
   const Rung& last = ladder.rungs.back();
   for (const Rung& rung : ladder.rungs) {
-    if (rung.added.empty() || rung.parameters.empty()) continue;
+    const bool seen = is_seen_in_measurements(rung);
+    if (rung.added.empty() || (rung.parameters.empty() && !seen)) continue;
     Estimates now = rung.parameters;
     for (auto& [name, estimate] : now) {
       if (last.estimates && last.estimates->contains(name)) estimate = last.estimates->at(name);
@@ -52,7 +53,7 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
     std::string line = added_in_words(rung) + ": " + values_of(now);
     if (&rung != &last && values_of(now) != values_of(rung.parameters))
       line += fmt::format(" in the last model ({} in rung {})", values_of(rung.parameters), rung.id);
-    if (rung.kept) line += "; " + *rung.kept;
+    if (rung.kept) line += (seen ? "" : "; ") + *rung.kept;
     if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
     out.push_back(line + (rung.also ? "; " + *rung.also : ""));
   }

@@ -20,7 +20,7 @@ Evidence evidence_for(const Rung& rung, bool something_remains) {
   if (!rung.actual_drop) return Evidence::untested;
   if (explains_no_more_than_chance(rung)) return Evidence::chance;
   if (rung.holds) return Evidence::of_the_hold;
-  if (rung.held_out_gain && *rung.held_out_gain < 0.0) return Evidence::predicts_worse;
+  if (!is_seen_in_measurements(rung) && rung.held_out_gain && *rung.held_out_gain < 0.0) return Evidence::predicts_worse;
   return rung.remained && something_remains ? Evidence::a_part : Evidence::needed;
 }
 
