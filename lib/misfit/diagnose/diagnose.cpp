@@ -85,7 +85,7 @@ std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covarianc
       best_to = to;
     }
   }
-  const std::string otherwise = "as a whole, the model's " + map.port + " depends otherwise on " + map.quantity +
+  std::string otherwise = "as a whole, the model's " + map.port + " depends otherwise on " + map.quantity +
                                 " than the data say, though no range of it stands out by itself";
   if (!(best.chi2() > 0.0)) return otherwise;
   const std::string amount = in_display_unit(std::abs(best.value), map.port_unit, std::sqrt(best.variance)) +
