@@ -102,7 +102,7 @@ TEST(Init, ATemperatureThatNothingHelpsToPredictIsThatOfTheSurroundings) {
     for (int k = 0; k < 60; ++k) water += (power - 9.0 * (water - room)) / 250e3;
   }
   folder.write("tank.csv", rows);
-  const Outcome outcome = run({"init", (folder.path() / "tank.csv").string()});
+  const Outcome outcome = run({"init", (folder.path() / "tank.csv").string(), "--out", (folder.path() / "tank").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expect_parts(outcome.out, {"input room", "output water", "nothing else in the file helps to predict it"});
 }
