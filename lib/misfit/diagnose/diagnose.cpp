@@ -86,7 +86,7 @@ std::string where_it_fails(const ForceMap& map, const Eigen::MatrixXd& covarianc
     }
   }
   std::string otherwise = "as a whole, the model's " + map.port + " depends otherwise on " + map.quantity +
-                                " than the data say, though no range of it stands out by itself";
+                          " than the data say, though no range of it stands out by itself";
   if (!(best.chi2() > 0.0)) return otherwise;
   const std::string amount = in_display_unit(std::abs(best.value), map.port_unit, std::sqrt(best.variance)) +
                              (best.value < 0.0 ? " too high" : " too low") + " where " + map.quantity + " is between " +
