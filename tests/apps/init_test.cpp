@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/apps/program.h"
+#include "tests/paths.h"
 
 namespace {
 
@@ -105,6 +106,23 @@ TEST(Init, ATemperatureThatNothingHelpsToPredictIsThatOfTheSurroundings) {
   const Outcome outcome = run({"init", (folder.path() / "tank.csv").string(), "--out", (folder.path() / "tank").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expect_parts(outcome.out, {"input room", "output water", "nothing else in the file helps to predict it"});
+}
+
+/// A recording of others (configs/two_heaters): the heater's warmth comes late, so that a few seconds ahead the past slope says it all,
+/// whatever the columns are called.
+TEST(Init, ATemperatureThatAHeaterMovesLateIsAnOutput) {
+  const std::string recorded = content(paths::source() / "configs" / "two_heaters" / "two_heaters.csv");
+  for (const bool rename : {false, true}) {
+    const TemporaryFolder folder;
+    std::string renamed = recorded;
+    if (rename) renamed.replace(0, renamed.find('\n'), "t[s],heater_1[%],heater_2[%],front[degC],back[degC]");
+    const fs::path data = folder.write("heaters.csv", renamed);
+    const Outcome outcome = run({"init", data.string(), "--out", (folder.path() / "heaters").string(), "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json columns = json::parse(outcome.out).at("columns");
+    for (std::size_t i : {1U, 2U}) EXPECT_EQ(columns.at(i).at("use"), "input") << columns.at(i);
+    for (std::size_t i : {3U, 4U}) EXPECT_EQ(columns.at(i).at("use"), "output") << columns.at(i);
+  }
 }
 
 /// What init writes is a study that fits as it stands, and its model follows the swing better than a constant.

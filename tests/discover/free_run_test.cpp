@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "misfit/discover/discover.h"
 #include "tests/discover/record.h"
@@ -60,6 +63,38 @@ TEST(FreeRun, HasTheParametersThatItFitsBest) {
   const auto calm = free_run(moved, {recorded});
   ASSERT_TRUE(calm);
   EXPECT_NEAR(calm->model.parameters[stiffness].value, there, 0.03 * there);
+}
+
+/// Of a free run of 100 samples: three forces on one state explain more than any on another one, which lacks something of its own.
+TEST(FreeRun, NominatesTheBestForceOfEveryState) {
+  FilterEstimate calm;
+  calm.traces.resize(1);
+  calm.traces[0].counted = 100;
+  std::vector<CandidateModel> models;
+  models.reserve(6);
+  std::vector<ScreeningResult> screened;
+  const auto add = [&](const std::string& effect, const std::string& port, double explained, CandidateFamily family) {
+    CandidateModel model;
+    model.effect = effect;
+    model.family = family;
+    model.port_names = {port};
+    models.push_back(std::move(model));
+    ScreeningResult& s = screened.emplace_back();
+    s.candidate_model = &models.back();
+    s.result.chi2 = explained;
+    s.result.dof = 1;
+  };
+  add("exchange", "dT2/dt", 40.0, CandidateFamily::physics);
+  add("delay", "dT1/dt", 51.0, CandidateFamily::physics);
+  add("radiation", "dT2/dt", 39.0, CandidateFamily::physics);
+  add("input_lag", "dT1/dt", 50.0, CandidateFamily::physics);
+  add("sensor_lag", "temperature_1", 60.0, CandidateFamily::sensor);
+  add("rate_limit", "dT1/dt", 49.0, CandidateFamily::physics);
+  std::vector<std::string> found;
+  for (const ScreeningResult* s : forces_shown_by(calm, screened)) found.push_back(s->candidate_model->effect);
+  EXPECT_EQ(found, (std::vector<std::string>{"delay", "input_lag", "rate_limit", "exchange"}));
+  screened[0].result.chi2 = screened[2].result.chi2 = 19.0;
+  EXPECT_EQ(forces_shown_by(calm, screened).size(), 3U) << "less than a fifth";
 }
 
 }  // namespace

@@ -79,5 +79,18 @@ TEST(NoiseVector, KeepsTheForcesOfEveryUnitOfPorts) {
     EXPECT_NEAR(packed.value[place_of_force(group, spec)], std::log(noise.force_of(group)), 1e-15) << group;
 }
 
+TEST(NoiseVector, WhiteNoiseIsNoLessThanThatOfReadingsInWholeSteps) {
+  SystemSpec spec;
+  spec.outputs = {{.name = "angle", .unit = "rad", .noise = 0.1}};
+  FilterNoise noise{3.0, 0.2, {{0.01, 0.3, 8.0, 0.4}}};
+  FilterNoise reference = noise;
+  reference.channels[0].rounding = 0.005;
+  EXPECT_NEAR(pack(noise, spec, reference).lower[place_in_noise::white(0)], std::log(0.005), 1e-15);
+  noise.channels[0].white = 1e-6;
+  EXPECT_NEAR(pack(noise, spec, reference).value[place_in_noise::white(0)], std::log(0.005), 1e-15);
+  reference.channels[0].rounding = 1e-5;
+  EXPECT_NEAR(pack(noise, spec, reference).lower[place_in_noise::white(0)], std::log(1e-4), 1e-15) << "a hundredth of the usual noise";
+}
+
 }  // namespace
 }  // namespace misfit

@@ -177,5 +177,21 @@ TEST_P(KnownInEveryMethod, AWhiteForceIsThatOfTheMethodThatHasOne) {
 INSTANTIATE_TEST_SUITE_P(Methods, KnownInEveryMethod, testing::ValuesIn(estimators::all),
                          [](const auto& of) { return std::string(of.param->name); });
 
+/// Most readings repeat the one before: a random force that follows the stairs has densities without bound where the noise may vanish.
+TEST(KnownNoise, OfReadingsInWholeStepsIsNoLessThanTheirRounding) {
+  constexpr double step = 0.05;
+  Signals rounded = decay(600, 5);
+  for (std::size_t i = 0; i < rounded.t.size(); ++i)
+    rounded.measured[0].values[i] = step * std::round(std::exp(-truth * rounded.t[i]) / step);
+  const auto registry = registry_with(decay_text);
+  FilterOptions one;
+  one.threads = 1;
+  const Fit fit = filter_error(trajectory_start(assemble(request_of("text"), *registry), {rounded}).from, {rounded}, one).fit;
+  EXPECT_EQ(fit.status, FitStatus::converged) << fit.message;
+  EXPECT_GT(fit.noise.at("y").value, 0.999 * step / std::sqrt(12.0));
+  EXPECT_NEAR(fit.parameters.at("a").value, truth, 3.0 * fit.parameters.at("a").sigma);
+  EXPECT_LT(fit.parameters.at("a").sigma, 0.05);
+}
+
 }  // namespace
 }  // namespace misfit

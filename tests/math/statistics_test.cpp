@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
+#include <vector>
 
 namespace misfit {
 namespace {
@@ -15,6 +17,16 @@ TEST(Resolution, IsTheStepOfWhichAllDifferencesAreMultiples) {
   EXPECT_NEAR(resolution_of({0.3, 0.55, 0.3, 1.05, -0.2}), 0.25, 1e-12);
   EXPECT_EQ(resolution_of({0.3, 0.55, 0.3, 1.0, -0.2}), 0.0) << "1.0 is off by a fifth";
   EXPECT_EQ(resolution_of({1.0, 2.0, 2.0}), 0.0) << "two values have no step";
+}
+
+/// Multiples of a step that is no short decimal number: what printing cuts off must not add up over thousands of steps.
+TEST(Resolution, OfAnEncoderPrintedWithSevenDecimals) {
+  constexpr double step = 2.0 * std::numbers::pi / 4096.0;
+  std::vector<double> angles;
+  for (int k = -2000; k <= 2000; k += k % 7 == 0 ? 1 : 3) angles.push_back(1e-7 * std::round(1e7 * step * k));
+  EXPECT_NEAR(resolution_of(angles), step, 1e-6 * step);
+  angles.push_back(step * 17.1);
+  EXPECT_EQ(resolution_of(angles), 0.0) << "a tenth of a step off";
 }
 
 TEST(Statistics, MedianOfOddEvenAndMissing) {

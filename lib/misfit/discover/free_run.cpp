@@ -104,13 +104,17 @@ std::vector<const ScreeningResult*> forces_shown_by(const FilterEstimate& calm, 
   constexpr std::size_t most = 3;
   double counted = 0.0;
   for (const FilterTrace& trace : calm.traces) counted += static_cast<double>(trace.counted);
-  std::vector<const ScreeningResult*> out;
+  std::vector<const ScreeningResult*> all;
   for (const ScreeningResult& s : screened) {
     const bool a_force = s.candidate_model->family != CandidateFamily::sensor;  // the random force takes over nothing else
-    if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) out.push_back(&s);
+    if (a_force && s.runs && s.result.dof > 0 && s.result.chi2 > least_share * counted) all.push_back(&s);
   }
-  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
-  out.resize(std::min(out.size(), most));
+  std::stable_sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->result.chi2 > b->result.chi2; });
+  std::vector<const ScreeningResult*> out(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most)));
+  for (const ScreeningResult* s : all) {
+    const auto same_place = [&](const ScreeningResult* o) { return o->candidate_model->port_names == s->candidate_model->port_names; };
+    if (out.size() < 2 * most && std::none_of(out.begin(), out.end(), same_place)) out.push_back(s);
+  }
   return out;
 }
 

@@ -21,7 +21,8 @@ struct FreeRunWork {
 /// output, or the model cannot be run so.
 [[nodiscard]] std::optional<FilterEstimate> free_run(const FilterEstimate& estimate, const FreeRunWork& work);
 
-/// Of candidates screened at the free run the three forces that explain most of it, each at least a fifth; the largest first.
+/// Of candidates screened at the free run the three forces that explain most of it, each at least a fifth, and the best at each further
+/// port (another state lacks something of its own), six at most; the largest first.
 [[nodiscard]] std::vector<const ScreeningResult*> forces_shown_by(const FilterEstimate& calm, const std::vector<ScreeningResult>& screened);
 
 /// Whether of the squares of a free run a fifth is gone in another: geometric mean over the outputs.

@@ -33,14 +33,16 @@ double resolution_of(std::vector<double> values) {
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i] - values[i - 1] > noise) least = std::min(least, values[i] - values[i - 1]);
   }
-  const double steps = (values.back() - values.front()) / least;
-  if (!(steps < 1e7)) return 0.0;
-  for (const double v : values) {
-    const double k = (v - values.front()) / least;
+  if (!((values.back() - values.front()) / least < 1e7)) return 0.0;
+  std::vector<double> steps(
+      values.size());  // from the lowest: counted from each to the next, where the digits lost in printing do not add up
+  for (std::size_t i = 1; i < values.size(); ++i) steps[i] = steps[i - 1] + std::round((values[i] - values[i - 1]) / least);
+  const double step = (values.back() - values.front()) / steps.back();
+  for (std::size_t i = 0; i < values.size(); ++i) {
     constexpr double whole = 0.02;
-    if (std::abs(k - std::round(k)) > whole) return 0.0;
+    if (std::abs(values[i] - values.front() - steps[i] * step) > whole * step) return 0.0;
   }
-  return least;
+  return step;
 }
 
 bool MeanAndSigma::constant() const {

@@ -161,6 +161,11 @@ bool are_called_in_and_out(const std::string& in, const std::string& out) {
   const std::string end = lower_case(out);
   return end.ends_with("out") && lower_case(in) == end.substr(0, end.size() - 3) + "in";
 }
+bool are_numbered_alike(const std::string& a, const std::string& b) {
+  const auto before_number = [](const std::string& name) { return lower_case(name.substr(0, name.find_last_not_of("0123456789") + 1)); };
+  const std::string kind = before_number(a);
+  return a != b && kind.size() < a.size() && kind == before_number(b);
+}
 bool is_called_segment(const std::string& name) { return is_called(name, segment_words); }
 
 }  // namespace misfit

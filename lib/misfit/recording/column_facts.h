@@ -36,6 +36,8 @@ namespace misfit {
 [[nodiscard]] bool is_called_input(const std::string& name);
 /// "t_in" and "t_out": two ends of something.
 [[nodiscard]] bool are_called_in_and_out(const std::string& in, const std::string& out);
+/// Alike but for the number behind them, case aside: "T_1" and "T_2", two of one kind.
+[[nodiscard]] bool are_numbered_alike(const std::string& a, const std::string& b);
 [[nodiscard]] bool is_called_segment(const std::string& name);
 
 }  // namespace misfit

@@ -10,8 +10,8 @@ namespace misfit {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<ChannelNoise> auto& data) {
-  auto& [white, coloured, coloured_frequency, coloured_damping, given, no_coloured] = data;
-  bytes(white, coloured, coloured_frequency, coloured_damping, given, no_coloured);
+  auto& [white, coloured, coloured_frequency, coloured_damping, given, no_coloured, rounding] = data;
+  bytes(white, coloured, coloured_frequency, coloured_damping, given, no_coloured, rounding);
 }
 
 template <class Bytes>

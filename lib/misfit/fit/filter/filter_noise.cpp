@@ -55,7 +55,7 @@ NoiseVector pack(const FilterNoise& noise, const SystemSpec& spec, const FilterN
     const ChannelNoise& usual = reference.channels[o];
     const std::string& name = spec.outputs[o].name;
     const double reach = usual.given ? 1.0 : 1e2;
-    push(out, name, channel.white, {usual.white / reach, usual.white * reach});
+    push(out, name, channel.white, {std::max(usual.white / reach, usual.rounding), usual.white * reach});
     push(out, name + "_coloured", channel.coloured, {1e-3 * usual.white, (usual.given || usual.no_coloured ? 1e-3 : 1e2) * usual.white});
     push(out, name + "_coloured_frequency", channel.coloured_frequency, {0.5 * usual.coloured_frequency, 3.3 * usual.coloured_frequency});
     push(out, name + "_coloured_damping", channel.coloured_damping, {0.01, 0.99});

@@ -21,6 +21,7 @@ struct ChannelNoise {
   double coloured_damping = 0.3;    ///< of critical
   bool given = false;               ///< by the study: white noise, and nothing else
   bool no_coloured = false;         ///< white is all there is
+  double rounding = 0.0;  ///< of a reference: sigma of readings in whole steps, step/sqrt(12) [unit], below which `white` does not go
 };
 
 /// Log-normal: log of a group's strength ~ N(log median, log_sigma²).

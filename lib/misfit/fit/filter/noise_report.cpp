@@ -72,6 +72,7 @@ struct NoisePart {
   std::string words, unit;
   bool absent_at_lower;
   std::optional<std::size_t> shape_of = {};  ///< the output of whose coloured noise it is the shape
+  double rounding = 0.0;                     ///< ChannelNoise::rounding
 };
 
 /// Those that the fit has found; `fit`: with noise and force.
@@ -86,7 +87,8 @@ std::vector<NoisePart> noise_parts(const FilterEstimate& estimate, const Fit& fi
   if (fit.driven) out.push_back({place_in_noise::force_time, "the correlation time of the random force", "s", false});
   for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
     const std::string of = std::string(" noise of ") + spec.outputs[o].name;
-    out.push_back({place_in_noise::white(o), "the white" + of, spec.outputs[o].unit, false});
+    const double rounding = estimate.reference.channels[o].rounding;
+    out.push_back({place_in_noise::white(o), "the white" + of, spec.outputs[o].unit, false, {}, rounding});
     out.push_back({place_in_noise::coloured(o), "the coloured" + of, spec.outputs[o].unit, true});
     if (!fit.noise.contains(spec.outputs[o].name + "_coloured")) continue;
     out.push_back({place_in_noise::coloured_frequency(o), "the frequency of the coloured" + of, "Hz", false, o});
@@ -144,11 +146,16 @@ void warn_of_noise_at_bounds(const FilterEstimate& estimate, int threads, Fit& f
   constexpr double nearest = 1e-3;  // of the logarithm
   const NoiseVector vector = pack(estimate.noise, estimate.model.system->spec(), estimate.reference);
   ColouredNoise coloured(estimate, threads);
-  for (const auto& [at, words, unit, absent_at_lower, shape_of] : noise_parts(estimate, fit)) {
+  for (const auto& [at, words, unit, absent_at_lower, shape_of, rounding] : noise_parts(estimate, fit)) {
     if (vector.upper[at] - vector.lower[at] < nearest) continue;  // given by the study
     const bool lower = vector.value[at] - vector.lower[at] < nearest, upper = vector.upper[at] - vector.value[at] < nearest;
     if (!upper && (!lower || absent_at_lower)) continue;
     if (shape_of && !coloured.is_there(*shape_of, fit)) continue;
+    if (lower && rounding > 0.0 && std::log(rounding) > vector.lower[at] - nearest) {
+      fit.facts[words.substr(4)] =
+          "that of its rounding: it is read in whole steps of " + in_display_unit(std::sqrt(12.0) * rounding, unit);
+      continue;
+    }
     fit.warnings.push_back(words + " is at its " + (lower ? "lower" : "upper") + " bound " +
                            in_display_unit(std::exp(vector.value[at]), unit) +
                            ": the likelihood still rises beyond it, so that this is no estimate");

@@ -233,6 +233,7 @@ LinearGuess guess_linear(const GuessData& data) {
         choice.oscillates ? "it fits no worse than a second order without a pull back to a rest" : "its held-out error is less than half";
     if (const auto drifting = drifting_first_order(data, search.lengthened(), least, fits)) out = *drifting;
   }
+  out.undriven = search.excess(choice.found().undriven) / search.excess(choice.found().mean_square);
   const bool numbers = std::isfinite(out.rest + out.tau + out.damping + out.stiffness) &&
                        std::all_of(out.gain.begin(), out.gain.end(), [](double g) { return std::isfinite(g); });
   return numbers ? out : none_found(data);

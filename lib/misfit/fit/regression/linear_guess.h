@@ -25,6 +25,7 @@ struct LinearGuess {
   double stiffness = 0.0, damping = 0.0;  ///< [1/s^2], [1/s], order 2
   double rest = 0.0;                      ///< [output], or [output/s^order] where it integrates
   std::vector<double> gain;               ///< per driver, static or (integrates) to y^(order); 0: that driver is not in the model
+  double undriven = 1.0;                  ///< the held-out error without any driver, over that with them (mean squares less the noise)
   std::string why;                        ///< in words
 };
 

@@ -7,6 +7,7 @@
 
 #include "misfit/core/units.h"
 #include "misfit/fit/regression/influence.h"
+#include "misfit/fit/regression/linear_guess.h"
 #include "misfit/recording/column_facts.h"
 
 namespace misfit {
@@ -14,6 +15,7 @@ namespace {
 
 /// What moves in the file, as a first look has it.
 struct Columns {
+  std::vector<double> t;                                       ///< [s]
   std::map<std::string, std::vector<double>> inputs, outputs;  ///< outputs: rates too
 
   [[nodiscard]] Influence influence_on(const std::string& name) const {
@@ -24,16 +26,25 @@ struct Columns {
     for (const auto& [other, values] : inputs) drivers.push_back(values);
     return misfit::influence_on(outputs.at(name), others, drivers);
   }
+  /// By the inputs, over windows of two swings or more: what heats the place of a sensor through walls shows later than a past slope does.
+  /// An input may follow it, too (a thermostat), and then predicts it by less.
+  [[nodiscard]] bool is_driven(const std::string& name) const {
+    constexpr double clearly = 4.0;  // times the mean square
+    GuessData data{t, outputs.at(name), {}, {}};
+    for (const auto& [input, values] : inputs) data.drivers.push_back({values, false, false, false});
+    return !inputs.empty() && guess_linear(data).undriven > clearly;
+  }
 };
 
 bool is_in(const ColumnSurvey& c, const char* unit) { return c.unit != "-" && parse_unit(c.unit).same_dimension(parse_unit(unit)); }
 
 /// A temperature that nothing in the file helps to predict is that of the surroundings of another one, even where it moves too little or
-/// too slowly for that to show.
+/// too slowly for that to show. What is numbered like another column (T_1, T_2) is a place as that one is.
 void take_what_nothing_predicts(RecordingSurvey& survey) {
   const auto longest =
       std::max_element(survey.parts.begin(), survey.parts.end(), [](const Table& a, const Table& b) { return a.rows() < b.rows(); });
   Columns all;
+  all.t = longest->columns.front().values;
   std::vector<ColumnSurvey*> outputs;
   for (auto& c : survey.columns) {
     const bool input = c.use == ColumnUse::input, output = c.use == ColumnUse::output;
@@ -51,7 +62,9 @@ void take_what_nothing_predicts(RecordingSurvey& survey) {
                                           influence_on(all.outputs[d->name], {all.outputs[c->name]}).matters());
     };
     const auto helped = std::find_if(outputs.begin(), outputs.end(), moved);
-    if (found[c->name].matters() || helped == outputs.end()) continue;
+    const bool one_of_several =
+        std::any_of(outputs.begin(), outputs.end(), [&](const ColumnSurvey* d) { return are_numbered_alike(c->name, d->name); });
+    if (found[c->name].matters() || helped == outputs.end() || one_of_several || all.is_driven(c->name)) continue;
     c->use = ColumnUse::input;
     c->is_measured_input = !jumps(longest->find(c->name)->values);
     c->why = "nothing else in the file helps to predict it, unlike " + (*helped)->name;
