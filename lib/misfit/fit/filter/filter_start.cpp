@@ -181,7 +181,22 @@ SizedRecording sized_by_motion(const FilterModel& model, const FilterData& data)
   return out;
 }
 
+/// Of readings that a converter or an encoder rounds to whole steps; 0 of others.
+double rounding_noise(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  return resolution_of(std::move(values)) / std::sqrt(12.0);
+}
+
 }  // namespace
+
+void mark_rounding(const FilterModel& model, const std::vector<FilterData>& data, FilterNoise& usual) {
+  for (std::size_t o = 0; o < usual.channels.size(); ++o) {
+    ChannelNoise& channel = usual.channels[o];
+    const bool takes_intervals = !model.steps.empty() && model.steps[o] > 0.0;
+    channel.rounding = channel.given || takes_intervals ? 0.0 : rounding_noise(data.front().signals->measured[o].values);
+    channel.white = std::max(channel.white, channel.rounding);
+  }
+}
 
 void mark_known(const FilterModel& model, FilterNoise& usual) {
   usual.time_is_given = model.model.force_time.has_value();
@@ -195,28 +210,17 @@ void mark_known(const FilterModel& model, FilterNoise& usual) {
   usual.prior = {model.force_group[port - model.force_ports.begin()], known.median, known.sigma / known.median};
 }
 
-/// Of readings that a converter or an encoder rounds to whole steps: no reading says more than its step (B. Widrow, I. Kollar, Quantization
-/// Noise (2008), ch. 4), and where most readings repeat the one before, a random force that follows the stairs would have densities without
-/// bound.
-double rounding_noise(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  return resolution_of(std::move(values)) / std::sqrt(12.0);
-}
-
 /// White noise and coloured noise as large, well above the motion (circular frequency `motion`), which the model itself must explain;
 /// pack() lets the coloured noise's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
-ChannelNoise usual_channel(const FilterModel& model, const Signals& signals, std::size_t o, double motion) {
-  const KnownNoise& known = model.model.known_noise[o];
-  const OutputSpec& output = model.model.system->spec().outputs[o];
+ChannelNoise usual_channel(const Model& model, const Signals& signals, std::size_t o, double motion) {
+  const KnownNoise& known = model.known_noise[o];
+  const OutputSpec& output = model.system->spec().outputs[o];
   constexpr double share_of_rate = 0.15, highest_share = 0.3, above_motion = 3.0;
   const std::vector<double>& values = signals.measured[o].values;
   const double step = own_step(signals, o), least = above_motion * motion / (2.0 * std::numbers::pi);
   ChannelNoise out;
   out.white = known.sigma > 0.0 ? known.sigma : measurement_noise(values);
   if (!(out.white > 0.0)) out.white = output.noise > 0.0 ? output.noise : 1.0;
-  const bool takes_intervals = !model.steps.empty() && model.steps[o] > 0.0;  // of the model: its noise comes before the rounding
-  if (!known.fixed && !takes_intervals) out.rounding = rounding_noise(values);
-  out.white = std::max(out.white, out.rounding);
   out.coloured_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
   out.no_coloured = out.coloured_frequency < least && have_own_clocks(signals);
   out.coloured = known.fixed || out.no_coloured ? 1e-3 * out.white : out.white;
@@ -244,7 +248,7 @@ FilterNoise usual_noise(const FilterModel& model, const std::vector<FilterData>&
   out.force = usual_force(0);
   for (int group = 1; group < model.force_groups(); ++group) out.further_forces.push_back(usual_force(group));
   const double motion = motion_frequency(model.model, recordings.front().states);
-  for (std::size_t o = 0; o < first.measured.size(); ++o) out.channels.push_back(usual_channel(model, first, o, motion));
+  for (std::size_t o = 0; o < first.measured.size(); ++o) out.channels.push_back(usual_channel(model.model, first, o, motion));
   mark_known(model, out);
   return out;
 }

@@ -15,4 +15,9 @@ namespace misfit {
 /// the random force acts on no port of the prior's unit.
 void mark_known(const FilterModel& model, FilterNoise& usual);
 
+/// Marks in the usual noise the rounding of channels that are read in whole steps: no reading says more than its step (B. Widrow, I.
+/// Kollar, Quantization Noise (2008), ch. 4), and where most readings repeat the one before, a random force that follows the stairs would
+/// have densities without bound. Not of a channel whose readings the model takes for intervals: its noise comes before the rounding.
+void mark_rounding(const FilterModel& model, const std::vector<FilterData>& data, FilterNoise& usual);
+
 }  // namespace misfit

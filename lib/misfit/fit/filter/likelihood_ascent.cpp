@@ -60,6 +60,7 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
   }
   theta = start.theta();
   out.reference = options.reference ? *options.reference : usual_noise(out.forced, out.data);
+  mark_rounding(out.forced, out.data, out.reference);
   out.noise = options.noise ? *options.noise : multiplied(out.reference, options.noise_factors, start);
   out.forced.set_force_time(out.noise.force_time);
   choose_mirrored_starts(out.forced, values(), hardly_forced(out.noise, out.reference), out.data);
