@@ -156,8 +156,8 @@ struct Choice {
   double lower = 0.0;  ///< the error of the second order, below that of the first [%]
   bool oscillates = false;
 
-  /// `seconds`: length of the record.
-  Choice(const WindowSearch& search, double seconds) : first(simplest(search, 1)), second(simplest(search, 2)) {
+  Choice(const WindowSearch& search, const GuessData& data) : first(simplest(search, 1)), second(simplest(search, 2)) {
+    const double seconds = data.t.back() - data.t.front();
     constexpr double clearly = 0.7, rings_clearly = 0.9;  // of the mean square: an error lower by a sixth, by a twentieth
     constexpr double most_damped = 0.9;
     const auto leaves_at_most = [&](double share, const Found& found) {
@@ -165,7 +165,10 @@ struct Choice {
     };
     const double damping = damping_ratio(second.poles);
     oscillates = damping < most_damped && leaves_at_most(rings(damping) ? rings_clearly : clearly, second);
-    if (const Found free = search.best(2, false); !oscillates && first.poles.damping * seconds < 1.0 && leaves_at_most(clearly, free)) {
+    if (data.without_inertia) {
+      if (second.poles.stiffness == 0.0) oscillates = false;
+    } else if (const Found free = search.best(2, false);
+               !oscillates && first.poles.damping * seconds < 1.0 && leaves_at_most(clearly, free)) {
       second = free;
       oscillates = true;
     }
@@ -199,8 +202,7 @@ struct Searched {
 std::optional<Searched> search_of(const GuessData& data) {
   const WindowSearch search(data.t, data.y, data.drivers);
   if (!search.possible()) return std::nullopt;
-  const double seconds = data.t.back() - data.t.front();
-  const Searched usual{search, Choice(search, seconds)};
+  const Searched usual{search, Choice(search, data)};
   if (!has_inputs(data)) return usual;
   Searched out = usual;
   for (int lengthened = 2; !out.search.needs_drivers(out.choice.found()); lengthened *= 2) {
@@ -209,7 +211,7 @@ std::optional<Searched> search_of(const GuessData& data) {
       out = usual;
       break;
     }
-    out = {longer, Choice(longer, seconds)};
+    out = {longer, Choice(longer, data)};
   }
   out.take_slow_inputs(data);
   return out;

@@ -13,6 +13,7 @@ struct GuessData {
   std::vector<double> y;     ///< [output]
   std::vector<double> rate;  ///< [output/s], its measured rate; empty: none
   std::vector<GuessDriver> drivers;
+  bool without_inertia = false;  ///< a temperature: what is stored has no momentum
 };
 
 /// A linear model to start from:
@@ -39,10 +40,10 @@ struct LinearGuess {
 /// four are left. An input that only windows twice as long need is in the model, too: its effect is slow. Order 2 is taken if the rate is
 /// measured, or if its held-out error is lower than that of order 1 by a sixth (mean square: 0.7; a twentieth, 0.9, where its damping ratio
 /// is between 0.05 and 0.5) and its damping ratio below 0.9 (two time constants are one and a lag, which discovery names); without a pull
-/// back also where the time constant of order 1 is longer than the record. Where order 1 with a drift in time halves that of order 1
-/// without, and leaves no more than order 2 without a pull back, it is order 1, without the drift; a pull back to rest if the mean square
-/// is 0.5 % higher without. Where nothing can be fitted: order 1 with a tenth of the record as tau, and every input with the gain
-/// σ(y)/σ(u).
+/// back also where the time constant of order 1 is longer than the record; never without a pull back for what has no inertia. Where order 1
+/// with a drift in time halves that of order 1 without, and leaves no more than order 2 without a pull back, it is order 1, without the
+/// drift; a pull back to rest if the mean square is 0.5 % higher without. Where nothing can be fitted: order 1 with a tenth of the record
+/// as tau, and every input with the gain σ(y)/σ(u).
 [[nodiscard]] LinearGuess guess_linear(const GuessData& data);
 
 }  // namespace misfit

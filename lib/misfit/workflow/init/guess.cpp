@@ -168,6 +168,7 @@ GuessedOutput guess_output(const RecordingSurvey& survey, const Table& table, co
   output.name = c.name;
   output.unit = unit_in_si(c.unit);
   data.y = of.values;
+  data.without_inertia = parse_unit(output.unit).same_dimension(parse_unit("K"));
   output.noise = noise_of(data.y, c, output.unit);
   if (auto values = values_with_signs(of, data)) {
     data.y = std::move(*values);
