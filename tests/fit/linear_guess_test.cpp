@@ -137,10 +137,14 @@ TEST(LinearGuess, ADriftOfTheRestMakesNoIntegral) {
 /// The position of a motor, whose rate is not measured.
 TEST(LinearGuess, APositionThatADriveIntegratesIsOfSecondOrder) {
   World world{.step = 0.02, .noise = 0.002, .hold = 30};
-  const LinearGuess guess = guess_linear(world.run([](double, double v, double u) { return 3.0 * u - 1.5 * v; }, true));
+  GuessData data = world.run([](double, double v, double u) { return 3.0 * u - 1.5 * v; }, true);
+  const LinearGuess guess = guess_linear(data);
   ASSERT_EQ(guess.order, 2) << guess.why;
   EXPECT_TRUE(guess.integrates);
   EXPECT_NEAR(guess.damping, 1.5, 0.3);
+  EXPECT_GT(guess.undriven, 4.0) << "the voltage is what moves it";
+  data.without_inertia = true;  // a temperature that does the same
+  EXPECT_EQ(guess_linear(data).order, 1);
 }
 
 /// An axis of 0.8 kg on a screw of 8 mm that runs unevenly by 0.3 N, at 12 N/A and 30 N s/m, held to a target by a controller: its current
