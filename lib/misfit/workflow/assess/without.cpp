@@ -39,10 +39,11 @@ std::string why_too_little(const std::optional<double>& drop, const std::optiona
                        counted(static_cast<std::size_t>(parameters), "parameter", "parameters"),
                        p_equals(chance_of(*drop, parameters, families)), families);
   }
-  if (const double least = least_held_out_gain(parameters); held_out_gain && !(*held_out_gain > least))
+  if (const double least = least_held_out_gain(parameters); held_out_gain && !(*held_out_gain > least)) {
     return fmt::format("what is held out is {} with it (log-likelihood {:+.1f}; more than {} is asked for {})",
                        *held_out_gain < 0.0 ? "predicted worse" : "hardly predicted better", *held_out_gain, tenths(least),
                        counted(static_cast<std::size_t>(parameters), "parameter", "parameters"));
+  }
   return "";
 }
 
