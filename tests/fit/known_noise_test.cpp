@@ -191,6 +191,8 @@ TEST(KnownNoise, OfReadingsInWholeStepsIsNoLessThanTheirRounding) {
   EXPECT_GT(fit.noise.at("y").value, 0.999 * step / std::sqrt(12.0));
   EXPECT_NEAR(fit.parameters.at("a").value, truth, 3.0 * fit.parameters.at("a").sigma);
   EXPECT_LT(fit.parameters.at("a").sigma, 0.05);
+  ASSERT_TRUE(fit.facts.contains("white noise of y"));
+  EXPECT_NE(fit.facts.at("white noise of y").find("whole steps of 0.05 V"), std::string::npos) << fit.facts.at("white noise of y");
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ TEST(Resolution, IsTheStepOfWhichAllDifferencesAreMultiples) {
   EXPECT_NEAR(resolution_of({0.3, 0.55, 0.3, 1.05, -0.2}), 0.25, 1e-12);
   EXPECT_EQ(resolution_of({0.3, 0.55, 0.3, 1.0, -0.2}), 0.0) << "1.0 is off by a fifth";
   EXPECT_EQ(resolution_of({1.0, 2.0, 2.0}), 0.0) << "two values have no step";
+  EXPECT_EQ(resolution_of({1.0, 1.0 + 1e-12, 1.0 + 2e-12, 1.0 + 3e-12, 1.0 + 4e-12}), 0.0) << "nor has what differs by rounding";
 }
 
 /// Multiples of a step that is no short decimal number: what printing cuts off must not add up over thousands of steps.

@@ -394,6 +394,15 @@ TEST(Recording, TheStepOfADigitisedColumnIsFound) {
   EXPECT_NE(column(s, "z").resolution, 0.005);
 }
 
+TEST(Recording, ColumnsNumberedAlikeAreOfOneKind) {
+  EXPECT_TRUE(are_numbered_alike("temperature_1", "Temperature_2"));
+  EXPECT_TRUE(are_numbered_alike("T9", "T12"));
+  EXPECT_FALSE(are_numbered_alike("T1", "T1"));
+  EXPECT_FALSE(are_numbered_alike("T_in", "T_out"));
+  EXPECT_FALSE(are_numbered_alike("plate", "plate2")) << "one without a number may be the whole";
+  EXPECT_FALSE(are_numbered_alike("heater_1", "temperature_1"));
+}
+
 TEST(Recording, AMeasurementThatStandsAtItsLimitIsSaid) {
   const RecordingSurvey s =
       survey(rows("t_s,u,y", 300, [](int k) { return fmt::format("{},{},{}", k, std::cos(0.07 * k), std::min(0.8, std::sin(0.05 * k))); }));

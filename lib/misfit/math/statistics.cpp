@@ -34,9 +34,10 @@ double resolution_of(std::vector<double> values) {
     if (values[i] - values[i - 1] > noise) least = std::min(least, values[i] - values[i - 1]);
   }
   if (!((values.back() - values.front()) / least < 1e7)) return 0.0;
-  std::vector<double> steps(
-      values.size());  // from the lowest: counted from each to the next, where the digits lost in printing do not add up
+  // Counted from each value to the next, where the digits lost in printing do not add up.
+  std::vector<double> steps(values.size());
   for (std::size_t i = 1; i < values.size(); ++i) steps[i] = steps[i - 1] + std::round((values[i] - values[i - 1]) / least);
+  if (!(steps.back() > 0.0)) return 0.0;  // they differ by rounding alone
   const double step = (values.back() - values.front()) / steps.back();
   for (std::size_t i = 0; i < values.size(); ++i) {
     constexpr double whole = 0.02;
