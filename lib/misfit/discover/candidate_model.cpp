@@ -198,7 +198,7 @@ Eigen::MatrixXd columns_of_whole_runs(const FilterEstimate& estimate, const Cand
       for (std::size_t side = 0; side < 2; ++side) {
         values[parameter] = side == 0 ? -h : h;
         runner.set_parameters(values);
-        if (!runner.run(data[e], estimate.noise, sides[side])) return {};
+        if (!runner.run(data[e], estimate.noise, sides[side], {.held_out = false})) return {};
       }
       for (std::size_t at : estimate.jacobians[e].index)
         out(row++, c) = (sides[0].departure(at) - sides[1].departure(at)) / (2.0 * h * std::sqrt(estimate.traces[e].S[at]));
@@ -355,7 +355,7 @@ Eigen::MatrixXd columns_with_fixed_gains(const FilterEstimate& estimate, const F
   FilterJacobian jacobian;
   for (const auto& known : estimate.data) {
     const FilterData data = filter_data_like(forced, known);
-    if (!runner.run(data, estimate.noise, trace, {&jacobian})) return {};
+    if (!runner.run(data, estimate.noise, trace, {.jacobian = &jacobian, .held_out = false})) return {};
     out.middleRows(at, jacobian.r.size()) = jacobian.J;
     at += jacobian.r.size();
   }

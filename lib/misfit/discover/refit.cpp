@@ -222,7 +222,7 @@ std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model, cons
   std::vector<FilterTrace> traces(without.data.size());
   for (std::size_t e = 0; e < without.data.size(); ++e) {
     data.push_back(filter_data_like(forced, without.data[e]));
-    if (!runner.run(data[e], with, traces[e])) return std::nullopt;
+    if (!runner.run(data[e], with, traces[e], {.held_out = without.whole_runs})) return std::nullopt;
   }
   constexpr int steps_of_noise = 3;
   const NoiseFit noise = fit_noise({&forced, &data, &traces}, with, {without.reference, work.threads, steps_of_noise});

@@ -74,10 +74,10 @@ void fields(Bytes& bytes, MaybeConst<FilterData> auto& data) {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<LinearisedRun> auto& data) {
-  auto& [n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik, counted,
-         validated] = data;
-  bytes(n, ny, samples, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik, counted,
-        validated);
+  auto& [n, ny, samples, end, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik,
+         counted, validated] = data;
+  bytes(n, ny, samples, end, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik,
+        counted, validated);
 }
 
 template <class Bytes>
@@ -103,12 +103,13 @@ void fields(Bytes& bytes, MaybeConst<FilterJacobian> auto& data) {
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterEstimate> auto& estimate) {
   auto& [model, forced, penalties, noise, reference, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information,
-         objective, loglik, validation_loglik, newton_decrement, edf, converged, out_of_time, message, notes, integration, outliers,
-         nonlinear, linearisations] = estimate;
+         objective, loglik, validation_loglik, newton_decrement, edf, converged, out_of_time, whole_runs, message, notes, integration,
+         outliers, nonlinear, linearisations] = estimate;
   static_cast<void>(model);
   static_cast<void>(forced);
   bytes(penalties, noise, reference, noise_fit, data, traces, jacobians, covariance, joint_covariance, joint_information, objective, loglik,
-        validation_loglik, newton_decrement, edf, converged, out_of_time, message, notes, integration, outliers, nonlinear, linearisations);
+        validation_loglik, newton_decrement, edf, converged, out_of_time, whole_runs, message, notes, integration, outliers, nonlinear,
+        linearisations);
 }
 
 namespace {

@@ -158,7 +158,13 @@ std::vector<IntegrationPlan> plans_of(const FilterEstimate& estimate) {
 
 FilterEstimate estimate_filter(const std::vector<FilterStart>& starts, const std::vector<Signals>& experiments,
                                const FilterOptions& options) {
-  return StartedSearches(starts, experiments, options).run();
+  try {
+    return StartedSearches(starts, experiments, options).run();
+  } catch (const DivergesWhereHeldOut&) {
+    FilterOptions whole = options;
+    whole.whole_runs = true;
+    return StartedSearches(starts, experiments, whole).run();
+  }
 }
 
 FilterEstimate estimate_filter(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
@@ -170,6 +176,7 @@ FilterEstimate estimate_freely(const Model& start, std::vector<Penalty> penaltie
                                const FilterOptions& options) {
   LikelihoodAscent at(start, std::move(penalties), experiments, options);
   settle_freely(at);
+  if (!at.linearise_whole()) throw RunError(at.failure());
   FilterEstimate out = std::move(at.out);
   out.model.set_theta(at.theta);
   const std::vector<double> all = out.forced.model.values_at(at.theta);

@@ -22,6 +22,9 @@ struct FilterOptions {
   bool verify = true;                                       ///< derivatives of the exact likelihood at the end, and steps by them
   /// Objective that is of use: the steps at the end stop where, by far, they do not promise to come there. nullopt: any.
   std::optional<double> least = {};
+  /// Every run of the search goes on to the end of the recordings. Else it ends where the fit does, but for the last one, unless that one
+  /// diverges in what is held out.
+  bool whole_runs = false;
 };
 
 /// Where a search for the maximum begins.
@@ -52,6 +55,7 @@ struct FilterEstimate {
   double edf = 0.0;
   bool converged = false;
   bool out_of_time = false;  ///< a limit of time was spent (core/watch.h): the best point until then
+  bool whole_runs = false;   ///< FilterOptions::whole_runs
   std::string message;
   std::vector<std::string> notes;  ///< on where the search began, and what it found besides
   std::string integration;         ///< what it costs and what its error does to the estimates, in words; empty where not verified

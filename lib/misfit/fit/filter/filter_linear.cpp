@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "misfit/core/watch.h"
@@ -20,7 +21,8 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
   typename Kalman<M, NY>::StateVector a = Kalman<M, NY>::StateVector::Zero(n), correction = a, shifted = a;
   typename Kalman<M, NY>::StateMatrix phi = Kalman<M, NY>::StateMatrix::Zero(n, n);
   const double old_time = model.force_time();
-  for (std::size_t k = data.first; k < trace.samples; ++k) {
+  const std::size_t end = std::min(trace.end, end_of_fit(data));
+  for (std::size_t k = data.first; k < end; ++k) {
     look_at_watch();
     for (int o = 0; o < ny; ++o) {
       const std::size_t at = trace.place(k, o);
@@ -31,7 +33,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
       const Reading reading = out.take(at, departure, variance, data.steps.empty() ? 0.0 : data.steps[o]);
       kalman.update(reading.e, reading.S);
     }
-    if (k + 1 == trace.samples) break;
+    if (k + 1 == end) break;
     phi = trace.Phi_at(k);
     const double h = t[k + 1] - t[k];
     // The force's own response with the new correlation time, to first order of the step in the rest of the system.

@@ -47,13 +47,13 @@ class FilterPass {
   }
 
   bool run() {
-    for (std::size_t k = data_.first; k < signals_.samples(); ++k) {
+    for (std::size_t k = data_.first; k < trace_.end; ++k) {
       if (!predict_outputs(k)) return fails(k);
       for (int o = 0; o < ny_; ++o) {
         if (!update_by(k, o)) return fails(k);
       }
       correct_state(k);
-      if (k + 1 < signals_.samples() && !step(k)) return fails(k);
+      if (k + 1 < trace_.end && !step(k)) return fails(k);
     }
     trace_.finite = std::isfinite(trace_.loglik);
     return trace_.finite;

@@ -26,6 +26,7 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples, bool in_step
   trace.y.assign(samples * ny, std::nan(""));
   trace.y_variance.assign(samples * ny, std::nan(""));
   trace.P.clear();
+  trace.end = samples;
   trace.finite = false;
   trace.loglik = trace.validation_loglik = 0.0;
   trace.counted = trace.validated = 0;
@@ -119,6 +120,13 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   return out;
 }
 
+std::size_t end_of_fit(const FilterData& data) {
+  const auto enters = [](SampleRole role) { return role == SampleRole::counted || role == SampleRole::update; };
+  const std::size_t outputs = data.signals->measured.size();
+  const auto last = std::find_if(data.use.rbegin(), data.use.rend(), enters);
+  return outputs == 0 ? 0 : (static_cast<std::size_t>(data.use.rend() - last) + outputs - 1) / outputs;
+}
+
 FilterData filter_data_like(const FilterModel& model, const FilterData& data) {
   FilterData out = data;
   out.steps = model.steps;
@@ -139,6 +147,7 @@ void FilterRunner::set_parameters(const std::vector<double>& values) { stepper_.
 bool FilterRunner::run(const FilterData& data, const FilterNoise& noise, FilterTrace& trace, const FilterRunOptions& options) {
   const int n = stepper_.states(), ny = stepper_.evaluator().outputs();
   resize(trace, n, ny, data.signals->samples(), !data.steps.empty());
+  if (!options.held_out) trace.end = end_of_fit(data);
   if (options.keep_P) trace.P.assign(trace.samples * n * (n + 2 * ny), 0.0);
   const FilterPassInput input{*model_, data, noise, options};
   return with_filter_size(n, ny, [&]<int M, int NY>() { return FilterPass<M, NY>(input, stepper_, trace).run(); });

@@ -72,11 +72,14 @@ struct FilterData {
 /// The same experiment for a model of the same system with further own states: measurements, start and uses as in `data`.
 [[nodiscard]] FilterData filter_data_like(const FilterModel& model, const FilterData& data);
 
+/// Samples up to the last one with a measurement that enters the fit.
+[[nodiscard]] std::size_t end_of_fit(const FilterData& data);
+
 /// What it was linearised about, and how. Row-major blocks per sample.
 struct LinearisedRun {
-  int n = 0, ny = 0;  ///< model states (forces included), channels
-  std::size_t samples = 0;
-  bool finite = false;  ///< false: a state left the finite numbers at sample failed_at
+  int n = 0, ny = 0;                 ///< model states (forces included), channels
+  std::size_t samples = 0, end = 0;  ///< of the recording; that were run: fewer where what is held out was left out at the end
+  bool finite = false;               ///< false: a state left the finite numbers at sample failed_at
   std::size_t failed_at = 0;
   std::vector<double> Phi;            ///< from sample k (filtered) to k + 1: n × n
   std::vector<double> H;              ///< ∂h/∂x at the predicted state: ny × n
@@ -123,6 +126,8 @@ inline constexpr int kLongestWildRun = 3;    ///< more in a row are not wild: th
 struct FilterRunOptions {
   FilterJacobian* jacobian = nullptr;
   bool keep_P = false;
+  /// false: no further than the last sample that enters the fit. What comes after changes nothing of it; the trace is 0 there.
+  bool held_out = true;
   std::vector<std::size_t>* rejected = nullptr;  ///< run_gated()
 };
 

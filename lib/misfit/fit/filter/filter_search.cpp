@@ -314,8 +314,10 @@ bool FilterSearch::step_along_axes() {
 }
 
 void FilterSearch::conclude() {
-  const bool runs = std::all_of(out_.traces.begin(), out_.traces.end(), [](const FilterTrace& trace) { return trace.finite; });
-  if (!runs && !at_.linearise()) throw RunError(at_.failure());
+  if (!at_.is_whole() && !at_.linearise_whole()) {
+    if (out_.whole_runs || !at_.linearise()) throw RunError(at_.failure());
+    throw DivergesWhereHeldOut();
+  }
   out_.model.set_theta(at_.theta);
   const std::vector<double> all = at_.values();
   for (std::size_t i = 0; i < all.size(); ++i) out_.forced.model.parameters[i].value = all[i];

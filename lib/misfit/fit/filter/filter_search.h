@@ -19,6 +19,9 @@
 // Of estimate_filter(): not for use outside.
 namespace misfit {
 
+/// Where a search ended, the model diverges in what is held out, which its runs left out.
+struct DivergesWhereHeldOut {};
+
 /// One search for the maximum, from one start: the steps of estimate_filter().
 class FilterSearch {
  public:

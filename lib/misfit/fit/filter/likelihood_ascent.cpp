@@ -51,6 +51,7 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
                                    const FilterOptions& options)
     : threads_(options.threads) {
   out.model = start;
+  out.whole_runs = options.whole_runs;
   out.penalties = options.choose_roughness ? std::move(penalties) : with_fixed_weights(std::move(penalties));
   out.forced = with_random_force(start);
   for (std::size_t e = 0; e < experiments.size(); ++e) {
@@ -67,19 +68,30 @@ LikelihoodAscent::LikelihoodAscent(const Model& start, std::vector<Penalty> pena
 }
 
 bool LikelihoodAscent::linearise() {
+  if (!run(out.whole_runs)) return false;
+  ++out.linearisations;
+  return true;
+}
+
+bool LikelihoodAscent::linearise_whole() { return run(true); }
+
+bool LikelihoodAscent::is_whole() const {
+  return std::all_of(out.traces.begin(), out.traces.end(), [](const FilterTrace& t) { return t.finite && t.end == t.samples; });
+}
+
+bool LikelihoodAscent::run(bool whole) {
   out.traces.resize(out.data.size());
   out.jacobians.resize(out.data.size());
   FilterRunner runner(out.forced, true);
   runner.set_parameters(values());
   double loglik = 0.0;
   for (std::size_t e = 0; e < out.data.size(); ++e) {
-    if (!runner.run(out.data[e], out.noise, out.traces[e], {&out.jacobians[e]})) {
+    if (!runner.run(out.data[e], out.noise, out.traces[e], {.jacobian = &out.jacobians[e], .held_out = whole})) {
       failed_experiment_ = e;
       return false;
     }
     loglik += out.traces[e].loglik;
   }
-  ++out.linearisations;
   out.loglik = loglik;
   objective = loglik + log_prior();
   return true;
@@ -94,6 +106,10 @@ void LikelihoodAscent::plan_along_measurements(double tolerance) {
 }
 
 bool LikelihoodAscent::plan(double tolerance) {
+  if (!is_whole() && !linearise_whole()) {
+    linearise();
+    return false;
+  }
   bool another = false;
   Stepper stepper(out.forced.model);
   stepper.evaluator().set_parameters(values().data());
@@ -118,7 +134,7 @@ double LikelihoodAscent::integration_shift() const {
   for (std::size_t e = 0; e < out.data.size(); ++e) {
     FilterData finer = out.data[e];
     finer.inputs.plan = refined(finer.inputs.plan);
-    if (!runner.run(finer, out.noise, trace)) return 0.0;
+    if (!runner.run(finer, out.noise, trace, {.held_out = out.whole_runs})) return 0.0;
     const FilterJacobian& jacobian = out.jacobians[e];
     Eigen::VectorXd change = -jacobian.r;
     for (Eigen::Index r = 0; r < change.size(); ++r) {

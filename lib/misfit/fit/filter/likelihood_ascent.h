@@ -22,8 +22,12 @@ class LikelihoodAscent {
   LikelihoodAscent(const Model& start, std::vector<Penalty> penalties, const std::vector<Signals>& experiments,
                    const FilterOptions& options);
 
-  /// Full run with derivatives at `theta`. False: the model cannot be run there, failure() says where it ended.
+  /// Run with derivatives at `theta`. False: the model cannot be run there, failure() says where it ended.
   bool linearise();
+  /// The same to the end of the recordings, which a search does not need (FilterOptions::whole_runs). False: it diverges on the way.
+  bool linearise_whole();
+  /// The last run went to the end of all recordings.
+  [[nodiscard]] bool is_whole() const;
   /// One Gauss–Newton step of the physical parameters with new roughness; shortened until the exact objective rises. Returns what a step
   /// promised of which no length rises: 0 if one did, or nothing was promised; infinity where no step could be computed.
   double gauss_newton_step();
@@ -83,6 +87,7 @@ class LikelihoodAscent {
   double objective = 0.0;  ///< at `theta` and `out.noise`
 
  private:
+  bool run(bool whole);
   /// Takes the longest share of the step by which the exact objective rises. False: there is none.
   bool rises_along(const Eigen::VectorXd& step);
   /// Where no share of the Newton step rises: Levenberg and Marquardt's, (N + mu diag N) step = gradient with mu = 1, 10, …, the first that

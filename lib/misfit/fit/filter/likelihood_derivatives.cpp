@@ -191,7 +191,8 @@ double ExactObjective::loglik_at(const Eigen::VectorXd& theta, const FilterNoise
   std::vector<FilterTrace> own(traces == nullptr ? estimate_->data.size() : 0);
   std::vector<FilterTrace>& runs = traces != nullptr ? *traces : own;
   for (std::size_t e = 0; e < estimate_->data.size(); ++e) {
-    if (!runner.run(estimate_->data[e], noise, runs[e])) return -std::numeric_limits<double>::infinity();
+    if (!runner.run(estimate_->data[e], noise, runs[e], {.held_out = estimate_->whole_runs}))
+      return -std::numeric_limits<double>::infinity();
     sum += runs[e].loglik;
   }
   return sum;

@@ -19,7 +19,7 @@ std::optional<Eigen::MatrixXd> information_with(const FilterEstimate& estimate, 
   FilterTrace trace;
   FilterJacobian jacobian;
   for (const FilterData& data : estimate.data) {
-    if (!runner.run(data, noise, trace, {&jacobian})) return std::nullopt;
+    if (!runner.run(data, noise, trace, {.jacobian = &jacobian, .held_out = estimate.whole_runs})) return std::nullopt;
     information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.J.transpose());
   }
   information = Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>());
