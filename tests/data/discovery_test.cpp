@@ -303,6 +303,52 @@ TEST(CandidateToBeginWith, GainsMostInAllOfThoseBesideWhichSomethingRemains) {
   EXPECT_EQ(candidate_to_begin_with(d)->effect, "cubic_damping");
 }
 
+Candidate short_ahead(const std::string& effect, double drop, double held_out_gain, double growth) {
+  Candidate c = imitation(effect, drop, held_out_gain);
+  c.remaining.reset();
+  c.grows_ahead = growth;
+  return c;
+}
+
+Candidate accepted(Candidate c) {
+  c.accepted = true;
+  return c;
+}
+
+TEST(CandidateShortAhead, GainsMostOfAllAndIsRefusedForItsPredictionsFartherAheadAlone) {
+  Discovery d;
+  d.candidates = {short_ahead("coulomb_friction", 610.0, 1260.0, 1.28), imitation("lag", 61.0, 185.0)};
+  ASSERT_NE(candidate_short_ahead(d), nullptr);
+  EXPECT_EQ(candidate_short_ahead(d)->effect, "coulomb_friction");
+  d.candidates[1] = imitation("input_dead_zone", 900.0, 1260.0);
+  EXPECT_EQ(candidate_short_ahead(d), nullptr) << "another one, refused for something else, gains more";
+  d.candidates[1] = imitation("input_dead_zone", 1300.0, 0.0);
+  d.candidates[1].held_out_gain.reset();
+  EXPECT_EQ(candidate_short_ahead(d), nullptr) << "what was refused before explains more than twice as much";
+  d.candidates[1] = accepted(imitation("lag", 61.0, 185.0));
+  EXPECT_EQ(candidate_short_ahead(d), nullptr) << "one is accepted";
+  d.candidates = {short_ahead("coulomb_friction", 610.0, 1260.0, 2.1)};
+  EXPECT_EQ(candidate_short_ahead(d), nullptr) << "it loses the motion";
+  EXPECT_EQ(candidate_short_ahead({}), nullptr);
+}
+
+TEST(CandidatesBeside, AreThreeThatGainOnWhatIsHeldOutTheLargestFirst) {
+  Discovery d;
+  Candidate refused = imitation("delay", 190.0, 400.0);
+  refused.remaining.reset();
+  d.candidates = {refused,
+                  imitation("load_friction", 46.0, 143.0),
+                  imitation("sensor_quantisation", 74.0, -620.0),
+                  imitation("lag", 61.0, 185.0),
+                  accepted(imitation("bias", 20.0, 3.0)),
+                  imitation("drift", 20.0, 2.0)};
+  const std::vector<Candidate> beside = candidates_beside(d);
+  ASSERT_EQ(beside.size(), 3U);
+  EXPECT_EQ(beside[0].effect, "lag");
+  EXPECT_EQ(beside[1].effect, "load_friction");
+  EXPECT_EQ(beside[2].effect, "bias");
+}
+
 /// The curve holds the line, which could only stand in its way.
 TEST(CandidateToBeginWith, IsNoPartOfTheChangeOfAParameterThatIsFound) {
   Candidate line = imitation("varying_parameter", 300.0, 190.0);

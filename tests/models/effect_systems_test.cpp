@@ -66,6 +66,23 @@ w = "-braking*w"
 w = { unit = "rad/s", noise = 0.1 }
 )toml";
 
+/// A gear and the load on its teeth, in the unit of what accelerates it.
+const std::string gear = R"toml(
+[states]
+angle = { unit = "rad" }
+speed = { unit = "rad/s", rate_of = "angle" }
+[inputs]
+drive = { unit = "rad/s^2" }
+[parameters]
+braking = { unit = "1/s", value = 0.1, free = true }
+[quantities]
+load = { unit = "rad/s^2", formula = "drive - braking*speed" }
+[equations]
+speed = "drive - braking*speed"
+[outputs]
+angle = { unit = "rad", noise = 0.1 }
+)toml";
+
 /// Alone in the system of the request.
 void try_in(const ModelRequest& request, const Registry& systems, const std::string& key, ModelsWith& out) {
   ModelRequest alone = request;
@@ -86,11 +103,12 @@ void try_in(const ModelRequest& request, const Registry& systems, const std::str
 ModelsWith models_with(const std::string& key) {
   ModelsWith out;
   static const std::shared_ptr<Registry> with_bodies = testing_models::registry_with(two_bodies),
-                                         with_motor = testing_models::registry_with(motor);
+                                         with_motor = testing_models::registry_with(motor), with_gear = testing_models::registry_with(gear);
   for (const auto& request : {parachute(true), parachute(false), spherical(), cart({}), tanks({}), declared("pendulum", {}),
                               declared("cascaded_tanks", {}), declared("duffing", {}), declared("text", {})})
     try_in(request, *with_bodies, key, out);
   try_in(declared("text", {}), *with_motor, key, out);
+  try_in(declared("text", {}), *with_gear, key, out);
   return out;
 }
 

@@ -47,7 +47,8 @@ void fields(Archive& json, MaybeConst<Candidate> auto& c) {
   json("rank", c.rank), json("effect", c.effect), json("ports", c.ports), json("score", c.score);
   json("predicted_drop", c.predicted_drop), json("actual_drop", c.actual_drop);
   json("held_out_gain", c.held_out_gain), json("p_value", c.p_value), json("group", c.group);
-  json.if_there("also", c.also), json.if_there("holds", c.holds), json.if_there("remaining", c.remaining);
+  json.if_there("also", c.also), json.if_there("holds", c.holds), json.if_there("remaining", c.remaining),
+      json.if_there("grows_ahead", c.grows_ahead);
   json("accepted", c.accepted), json("why", c.why), json("parameters", c.parameters),
       json("family", NameOf(c.family, candidate_family_names));
   json("roles", c.roles), json("dof", c.dof), json("described", c.absorbed), json("force", c.force);
@@ -131,6 +132,15 @@ bool is_part_of_unexplained(const Candidate& c, const Discovery& discovery) {
          std::any_of(c.roles.begin(), c.roles.end(), [&](const auto& role) { return role.second == discovery.unexplained_quantity; });
 }
 
+/// Does a curve of unknown form explain more than this candidate (more than twice as much, where none can be added in its place), or a
+/// refitted candidate more than twice as much?
+bool is_past_a_larger_one(const Candidate& candidate, const Discovery& discovery) {
+  const double drop = *candidate.actual_drop, of_curve = discovery.unexplained_effects.empty() ? 2.0 * drop : drop;
+  return std::any_of(discovery.candidates.begin(), discovery.candidates.end(), [&](const Candidate& c) {
+    return is_tested_curve(c) ? c.score - 2.0 * c.dof > of_curve : c.actual_drop && *c.actual_drop > 2.0 * drop;
+  });
+}
+
 }  // namespace
 
 std::size_t effects_tested(const Discovery& discovery) {
@@ -150,12 +160,30 @@ const Candidate* candidate_to_begin_with(const Discovery& discovery) {
     if (!there || is_part_of_unexplained(c, discovery) || !c.remaining || !c.actual_drop || !c.held_out_gain) continue;
     if (best == nullptr || gain_in_all(c) > gain_in_all(*best)) best = &c;
   }
-  if (best == nullptr) return nullptr;
-  const double drop = *best->actual_drop, of_curve = discovery.unexplained_effects.empty() ? 2.0 * drop : drop;
-  const bool past_a_larger_one = std::any_of(discovery.candidates.begin(), discovery.candidates.end(), [&](const Candidate& c) {
-    return is_tested_curve(c) ? c.score - 2.0 * c.dof > of_curve : c.actual_drop && *c.actual_drop > 2.0 * drop;
-  });
-  return past_a_larger_one ? nullptr : best;
+  return best == nullptr || is_past_a_larger_one(*best, discovery) ? nullptr : best;
+}
+
+const Candidate* candidate_short_ahead(const Discovery& discovery) {
+  constexpr double most_growth = 2.0;
+  const Candidate* best = nullptr;
+  for (const Candidate& c : discovery.candidates) {
+    if (c.accepted) return nullptr;
+    if (!c.actual_drop || !c.held_out_gain) continue;
+    if (best == nullptr || gain_in_all(c) > gain_in_all(*best)) best = &c;
+  }
+  if (best == nullptr || !best->grows_ahead || *best->grows_ahead > most_growth) return nullptr;
+  return is_past_a_larger_one(*best, discovery) ? nullptr : best;
+}
+
+std::vector<Candidate> candidates_beside(const Discovery& discovery) {
+  constexpr std::size_t most = 3;
+  std::vector<Candidate> out;
+  for (const Candidate& c : discovery.candidates) {
+    if (is_tested_effect(c) && (c.accepted || c.remaining) && c.actual_drop && c.held_out_gain.value_or(0.0) > 0.0) out.push_back(c);
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) { return gain_in_all(a) > gain_in_all(b); });
+  if (out.size() > most) out.resize(most);
+  return out;
 }
 
 std::string tested_in_words(const Discovery& discovery) {

@@ -40,6 +40,9 @@ struct Candidate {
   std::optional<std::string> also;                          ///< other values that explain hardly less, or what `holds` says, in words
   /// What is still significant beside it, the only reason against it: "an unknown surface dv/dt(y, u)".
   std::optional<std::string> remaining;
+  /// Factor by which predictions farther ahead than one sample get worse with it, the only reason against it (growth_of_errors()): what is
+  /// held out gains.
+  std::optional<double> grows_ahead;
   double p_value = 1.0;            ///< corrected for cells scanned and families
   std::vector<std::string> group;  ///< effects that these data cannot distinguish from this one, itself included; empty: alone
   bool absorbed = false;           ///< by the free parameters (1 − R² < 0.01), and not clearly significant: not tested
@@ -129,6 +132,15 @@ struct Discovery {
 /// the quantity of which it is found to be a curve). nullptr: there is none, a curve of unknown form explains more (more than twice as
 /// much, where none can be added in its place), or a refitted candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
+
+/// None is accepted, and one explains more of what is measured and of what is held out than any other, but predicts worse farther ahead by
+/// itself (`grows_ahead`, by no more than twice): what it lacks beside it may be missing, too. Dry friction that alone has to hold what a
+/// friction growing with the load holds is too large for the motion. nullptr: there is none, or something that is refused explains more
+/// than twice as much, as in candidate_to_begin_with().
+[[nodiscard]] const Candidate* candidate_short_ahead(const Discovery& discovery);
+/// Of a search with such an effect in the model, what may be missing beside it: effects accepted or refused for a lack of fit alone, which
+/// gain on what is held out; those that gain most in all first, three at most.
+[[nodiscard]] std::vector<Candidate> candidates_beside(const Discovery& discovery);
 
 /// Effects of the library that were tested: no curves of unknown form, and none that the model already describes.
 [[nodiscard]] std::size_t effects_tested(const Discovery& discovery);

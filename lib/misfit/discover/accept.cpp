@@ -60,10 +60,11 @@ bool is_seen_in_measurements(const RankedCandidate& e, const SearchContext& cont
 }
 
 /// The reason why it cannot be accepted; empty if there is none. Notes in `e` whether its refit is degenerate, its held-out gain (which may
-/// take two fits), and whether that alone speaks against it.
+/// take two fits), and whether that alone, or predictions farther ahead alone, speak against it.
 std::string reason_against(RankedCandidate& e, HeldOut& held_out, const SearchContext& context) {
   Candidate& c = e.candidate;
   e.alone_gains_nothing = false;
+  c.grows_ahead.reset();
   if (!(c.p_value < context.options.p_accept)) return not_significant(e, context);
   if (is_seen_in_measurements(e, context)) {
     if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
@@ -88,8 +89,12 @@ std::string reason_against(RankedCandidate& e, HeldOut& held_out, const SearchCo
   if (no_edge) return *no_edge;
   if (no_limit) return *no_limit;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
-  if (const double growth = held_out.growth_ahead(e.refit->estimate); growth > kMostGrowthOfErrors) return growth_in_words(growth);
-  e.alone_gains_nothing = !(*c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit)));
+  const bool gains = *c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit));
+  if (const double growth = held_out.growth_ahead(e.refit->estimate); growth > kMostGrowthOfErrors) {
+    if (gains) c.grows_ahead = growth;
+    return growth_in_words(growth);
+  }
+  e.alone_gains_nothing = !gains;
   if (!e.alone_gains_nothing) return "";
   if (!(*c.held_out_gain > 0.0)) return "the held-out log-likelihood does not rise (" + format_value(*c.held_out_gain) + ")";
   const int parameters = estimated_parameters(*e.refit);

@@ -317,6 +317,12 @@ class VerdictBuilder {
     effects_added_ ? added(words, command("open"), VerdictKind::unknown_form) : say(VerdictKind::unknown_form, words, command("open"));
   }
 
+  /// discover --auto would look for what is missing beside the best one, and has not.
+  [[nodiscard]] bool looks_for_two(const Discovery& d) const {
+    const Candidate* first = candidate_short_ahead(d);
+    return first != nullptr && why_taken_off(effect_at(first->effect, first->roles)) == nullptr;
+  }
+
   void nothing_accepted(const Discovery& d) {
     if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
       say(VerdictKind::not_decided, d.verdict, command("discover") + more_time(d.outcome));
@@ -348,6 +354,10 @@ class VerdictBuilder {
             add_by_hand(best), VerdictKind::not_decided);
     } else if (d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
+      if (looks_for_two(d))
+        return say(VerdictKind::not_decided,
+                   as_sentence(d.verdict) + " Something else may be missing beside it, with which they do not: --auto looks for both",
+                   command("discover") + " --auto");
       say(VerdictKind::not_decided, as_sentence(d.verdict) + (by_hand(best).empty() ? "" : " " + by_hand(best)), add_by_hand(best));
     } else if (d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, as_sentence(d.verdict) + " Write one as a formula under [effects]", "misfit help study");

@@ -73,6 +73,13 @@ std::vector<double> twice_as_many(const std::vector<double>& knots) {
   return out;
 }
 
+/// Of the longest predictions, in what is fitted or in what is held out.
+double largest_growth(const Rung& before, const Rung& after) {
+  const double fitted = growth_of_errors(before.k_step, after.k_step);
+  if (!before.validation_k_step || !after.validation_k_step) return fitted;
+  return std::max(fitted, growth_of_errors(*before.validation_k_step, *after.validation_k_step));
+}
+
 std::string in_words(const std::string& name, const Without& without, double families) {
   return fmt::format("{} is no longer significant beside what was added after it (a drop of {}, among {:g} that were tried)", name,
                      format_value(without.drop), families);
@@ -97,7 +104,7 @@ class Extension {
         ladder_.gained_too_little(effect_at(next->effect, next->roles), why_off_);
         break;
       }
-      if (!next && !begin_with_one(discovery) && !add_curve(discovery)) break;
+      if (!next && !begin_with_one(discovery) && !begin_with_two(discovery) && !add_curve(discovery)) break;
       while (one_leaves() || one_is_exchanged() || one_is_sharper() || one_is_named()) {
       }
     }
@@ -148,6 +155,42 @@ class Extension {
     const Candidate* candidate = candidate_to_begin_with(discovery);
     if (candidate == nullptr || has_left(*candidate)) return false;
     return add_tentatively(*candidate, alternatives_to(*candidate, discovery));
+  }
+
+  /// Two things are missing, and one that is right one sample ahead predicts worse farther ahead without the other: both become rungs where
+  /// with both of them nothing predicts worse than without. False: there is no such one, or nothing that does this.
+  bool begin_with_two(const Discovery& discovery) {
+    const Candidate* first = candidate_short_ahead(discovery);
+    if (first == nullptr || has_left(*first)) return false;
+    const int without = ladder_.last_rung().id;
+    const std::string name = effect_at(first->effect, first->roles);
+    if (!can_be_added(*first)) return false;
+    ladder_.root().note(name + " predicts worse farther ahead by itself: it stays if something else is missing beside it that mends this");
+    if (add_beside(name, without)) return true;
+    ladder_.root().note(name + ": nothing was found beside which it predicts no worse farther ahead: its rung is taken off");
+    take_off_last();
+    ladder_.gained_too_little(name, "by itself, " + first->why + ", and nothing was found that mends this");
+    return false;
+  }
+  /// The first effect, of those that may be missing beside the last rung's, with which predictions are no worse than in rung `without`.
+  bool add_beside(const std::string& name, int without) {
+    const Discovery beside = discovered(ladder_.last());
+    if (listener_.discovered) listener_.discovered(beside);
+    families_ = static_cast<double>(beside.candidates.size());
+    for (const Candidate& second : candidates_beside(beside)) {
+      if (has_left(second) || !can_be_added(second)) continue;
+      const double growth = largest_growth(rung_of(without), ladder_.ladder().rungs.back());
+      if (!(growth > 1.0)) return true;
+      ladder_.root().note(fmt::format("with {} and {} {}: the rung of the latter is taken off", name,
+                                      effect_at(second.effect, second.roles), growth_in_words(growth)));
+      take_off_last();
+    }
+    return false;
+  }
+
+  void take_off_last() {
+    ladder_.remove(std::to_string(ladder_.ladder().rungs.back().id));
+    added_.pop_back();
   }
 
   /// A force or an error of unknown form becomes a rung as it is: a curve of the quantity that it depends on. What else is missing can then
@@ -215,21 +258,25 @@ class Extension {
 
   /// What discovery does not accept as it is. False: it cannot be fitted, or the rung is off again, as why_not_kept says.
   bool add_tentatively(const Candidate& candidate, std::vector<Candidate> alternatives) {
+    if (!can_be_added(candidate, std::move(alternatives))) return false;
+    why_off_ = why_not_kept(ladder_.ladder().rungs.back());
+    if (why_off_.empty()) return true;
+    ladder_.root().note(fmt::format("{}: {}: its rung is taken off", effect_at(candidate.effect, candidate.roles), why_off_));
+    take_off_last();
+    return false;
+  }
+
+  /// add(), of what may not be possible to fit.
+  bool can_be_added(const Candidate& candidate, std::vector<Candidate> alternatives = {}) {
     const std::string name = effect_at(candidate.effect, candidate.roles);
     try {
-      if (!add(candidate, std::move(alternatives))) return false;
+      return add(candidate, std::move(alternatives));
     } catch (const InputError& error) {  // what a curve is one of hardly moves in the fit that comes first
       return cannot_be_added(name, error);
     } catch (const RunError& error) {
       stop_if_interrupted();
       return cannot_be_added(name, error);
     }
-    why_off_ = why_not_kept(ladder_.ladder().rungs.back());
-    if (why_off_.empty()) return true;
-    ladder_.root().note(fmt::format("{}: {}: its rung is taken off", name, why_off_));
-    ladder_.remove(std::to_string(ladder_.ladder().rungs.back().id));
-    added_.pop_back();
-    return false;
   }
 
   bool cannot_be_added(const std::string& name, const std::exception& error) {
