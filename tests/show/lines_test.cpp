@@ -18,6 +18,9 @@ Fit filter() {
 TEST(LineOfAFit, GivesTheRandomForceOrWithoutOneTheResiduals) {
   Fit fit = filter();
   EXPECT_EQ(line_of(fit), "gain 2.00 ± 0.10 V; RMS error of w 0.3 V, 1.5 % of the motion");
+  fit.predictions.push_back({"again", "w", "V", {}, {}, {}, {}, {}, 0.4, 0.02});
+  EXPECT_EQ(line_of(fit),
+            "gain 2.00 ± 0.10 V; RMS error of w in 'bench' 0.3 V, 1.5 % of the motion, of w in 'again' 0.4 V, 2 % of the motion");
   fit.force = {{"dw/dt", {20.0, 1.0, "V/s"}}};
   EXPECT_EQ(line_of(fit), "gain 2.00 ± 0.10 V; random force 20.0 ± 1.0 V/s");
 }

@@ -21,12 +21,15 @@ std::string joined(const std::vector<std::string>& parts, const char* between) {
   return out;
 }
 
-/// "P_y 1.78 px, 1.1 % of the motion".
+/// "P_y 1.78 px, 1.1 % of the motion"; of several experiments: "P_y in 'flight_2' 1.78 px, …".
 std::vector<std::string> residuals(const Fit& fit) {
   std::vector<std::string> out;
+  const bool several = std::any_of(fit.predictions.begin(), fit.predictions.end(),
+                                   [&](const auto& p) { return p.experiment != fit.predictions.front().experiment; });
   for (const ChannelPrediction& p : fit.predictions) {
     if (!p.rms || out.size() == most_named) continue;
-    out.push_back(p.channel + " " + in_display_unit(*p.rms, p.unit) + (p.nrmse ? ", " + share_of_motion_in_words(*p.nrmse) : ""));
+    out.push_back(p.channel + (several ? " in '" + p.experiment + "' " : " ") + in_display_unit(*p.rms, p.unit) +
+                  (p.nrmse ? ", " + share_of_motion_in_words(*p.nrmse) : ""));
   }
   return out;
 }
