@@ -369,6 +369,16 @@ TEST(CandidateToBeginWith, ActsWhereTheModelFails) {
   EXPECT_EQ(candidate_to_begin_with(d), nullptr);
 }
 
+TEST(CandidateToBeginWith, IsAForceWhereWhatItLeavesLooksLikeAnErrorOfAnOutput) {
+  Discovery d = of_unknown_form({imitation("load_friction", 243.0, 90.0)});
+  d.unexplained_port = "angle";
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr) << "a force elsewhere";
+  d.unexplained_error = true;
+  EXPECT_NE(candidate_to_begin_with(d), nullptr);
+  d.candidates.front().family = CandidateFamily::sensor;
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr) << "of another output";
+}
+
 TEST(CandidateToBeginWith, IsNotChosenPastWhatExplainsMore) {
   Candidate curve;
   curve.effect = "unknown:dw/dt(w)";

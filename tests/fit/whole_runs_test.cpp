@@ -50,6 +50,16 @@ TEST(EndOfFit, IsBehindTheLastSampleThatEntersIt) {
   EXPECT_EQ(end_of_fit(filter_data(forced, s)), 0U);
 }
 
+/// Of a recording that is held out as a whole, with a curve of many knots in the model.
+TEST(FilterJacobian, OfNothingThatCountsAddsNothing) {
+  constexpr int many = 60;
+  FilterJacobian none;
+  none.J.resize(0, many);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(many, many);
+  none.add_information(information);
+  EXPECT_EQ(information, Eigen::MatrixXd::Identity(many, many));
+}
+
 /// x' = b sqrt(k − u) − a x cannot be run where u is 2 and k is smaller: beyond what is fitted, where u is 1 at most and k is about 1.5.
 TEST(WholeRuns, AreMadeWhereTheModelDivergesInWhatIsHeldOut) {
   const std::string text = R"toml(

@@ -132,6 +132,12 @@ bool is_part_of_unexplained(const Candidate& c, const Discovery& discovery) {
          std::any_of(c.roles.begin(), c.roles.end(), [&](const auto& role) { return role.second == discovery.unexplained_quantity; });
 }
 
+/// On the port of what is unexplained. Of an error of an output a force, too: what a force leaves looks like one.
+bool acts_where_it_fails(const Candidate& c, const Discovery& discovery) {
+  const bool there = std::find(c.ports.begin(), c.ports.end(), discovery.unexplained_port) != c.ports.end();
+  return there || (discovery.unexplained_error && c.family != CandidateFamily::sensor);
+}
+
 /// Does a curve of unknown form explain more than this candidate (more than twice as much, where none can be added in its place), or a
 /// refitted candidate more than twice as much?
 bool is_past_a_larger_one(const Candidate& candidate, const Discovery& discovery) {
@@ -156,8 +162,8 @@ double gain_in_all(const Candidate& candidate) { return 0.5 * candidate.actual_d
 const Candidate* candidate_to_begin_with(const Discovery& discovery) {
   const Candidate* best = nullptr;
   for (const Candidate& c : discovery.candidates) {
-    const bool there = std::find(c.ports.begin(), c.ports.end(), discovery.unexplained_port) != c.ports.end();
-    if (!there || is_part_of_unexplained(c, discovery) || !c.remaining || !c.actual_drop || !c.held_out_gain) continue;
+    if (!acts_where_it_fails(c, discovery) || is_part_of_unexplained(c, discovery) || !c.remaining || !c.actual_drop || !c.held_out_gain)
+      continue;
     if (best == nullptr || gain_in_all(c) > gain_in_all(*best)) best = &c;
   }
   return best == nullptr || is_past_a_larger_one(*best, discovery) ? nullptr : best;

@@ -128,9 +128,10 @@ struct Discovery {
 [[nodiscard]] double gain_in_all(const Candidate& candidate);
 
 /// Something else remains beside each of them, and none is accepted: the one to begin with, that with the largest gain
-/// (gain_in_all) of those that act where the model fails, but not a part of what is unexplained (a parameter that changes along a line with
-/// the quantity of which it is found to be a curve). nullptr: there is none, a curve of unknown form explains more (more than twice as
-/// much, where none can be added in its place), or a refitted candidate that is refused more than twice as much.
+/// (gain_in_all) of those that act where the model fails (where that is an error of an output, any force: what it leaves looks like one),
+/// but not a part of what is unexplained (a parameter that changes along a line with the quantity of which it is found to be a curve).
+/// nullptr: there is none, a curve of unknown form explains more (more than twice as much, where none can be added in its place), or a
+/// refitted candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
 
 /// None is accepted, and one explains more of what is measured and of what is held out than any other, but predicts worse farther ahead by

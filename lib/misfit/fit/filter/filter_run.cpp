@@ -120,6 +120,10 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
   return out;
 }
 
+void FilterJacobian::add_information(Eigen::MatrixXd& lower) const {
+  if (J.rows() > 0) lower.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
+}
+
 std::size_t end_of_fit(const FilterData& data) {
   const auto enters = [](SampleRole role) { return role == SampleRole::counted || role == SampleRole::update; };
   const std::size_t outputs = data.signals->measured.size();

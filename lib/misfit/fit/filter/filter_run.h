@@ -117,6 +117,9 @@ struct FilterJacobian {
   RowMatrix J;                     ///< rows × columns
   Eigen::VectorXd r;               ///< rows
   std::vector<std::size_t> index;  ///< sample · ny + channel of each row
+
+  /// Adds JᵀJ to the lower triangle; nothing where no measurement counts (Eigen's product divides by the number of rows).
+  void add_information(Eigen::MatrixXd& lower) const;
 };
 
 inline constexpr double kOutlierGate = 5.0;  ///< sigmas: beyond, a measurement is set aside as an outlier (5.7e-7 of good ones)

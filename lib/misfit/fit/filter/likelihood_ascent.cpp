@@ -162,7 +162,7 @@ NormalEquations LikelihoodAscent::normal_equations() const {
   sums.g = Eigen::VectorXd::Zero(n);
   sums.theta = theta;
   for (const auto& jacobian : out.jacobians) {
-    sums.N.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.J.transpose());
+    jacobian.add_information(sums.N);
     sums.g += jacobian.J.transpose() * jacobian.r;
     sums.rss += jacobian.r.squaredNorm();
     sums.count += static_cast<double>(jacobian.r.size());

@@ -20,7 +20,7 @@ std::optional<Eigen::MatrixXd> information_with(const FilterEstimate& estimate, 
   FilterJacobian jacobian;
   for (const FilterData& data : estimate.data) {
     if (!runner.run(data, noise, trace, {.jacobian = &jacobian, .held_out = estimate.whole_runs})) return std::nullopt;
-    information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.J.transpose());
+    jacobian.add_information(information);
   }
   information = Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>());
   estimate.regularised_prior(information.diagonal()).add_precision(information);
