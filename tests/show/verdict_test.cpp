@@ -235,6 +235,26 @@ TEST(Verdict, WhatIsHeldOutStandsBesideWhatWasFitted) {
   EXPECT_EQ(shown(c.verdict().errors[1]), "9 V to 1.5 V (-83 %)");
 }
 
+TEST(Verdict, FreeRunsOfTheLadderComeFirstWhereTheirErrorsFallClearly) {
+  Case c;
+  c.add_effect();
+  const std::map<std::string, Estimate> before = {{"w", {3.0, 0.0, "V"}}}, held_out = {{"w", {5.0, 0.0, "V"}}};
+  c.ladder->rungs[0].free_rms = before;
+  EXPECT_THAT(c.verdict().errors.front().what(), HasSubstr("samples")) << "that of the last rung is not known";
+  c.ladder->rungs[0].validation_free_rms = held_out;
+  c.ladder->rungs[1].free_rms = c.ladder->rungs[1].validation_free_rms = {{"w", {1.5, 0.0, "V"}}};
+  const Verdict v = c.verdict();
+  ASSERT_GE(v.errors.size(), 3U);
+  EXPECT_EQ(v.errors[0].what(), "RMS error of w in a free run in the estimation data");
+  EXPECT_EQ(shown(v.errors[0]), "3 V to 1.5 V (-50 %)");
+  EXPECT_EQ(v.errors[1].what(), "RMS error of w in a free run in the held-out data");
+  EXPECT_EQ(shown(v.errors[1]), "5 V to 1.5 V (-70 %)");
+  EXPECT_THAT(v.sentence, HasSubstr("with it the RMS error of w in a free run in the estimation data falls from 3 V to 1.5 V"));
+  c.ladder->rungs[1].free_rms = before;
+  c.ladder->rungs[1].validation_free_rms = held_out;
+  EXPECT_THAT(c.verdict().errors.front().what(), HasSubstr("samples")) << "no change";
+}
+
 TEST(Verdict, ARandomForceThatIsGoneIsSaidNotToBeDistinguishableFrom0) {
   Case c;
   c.add_effect();

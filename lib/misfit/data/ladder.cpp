@@ -35,6 +35,7 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
   json.if_there("also", r.also), json.if_there("holds", r.holds), json.if_there("new_parameters", r.new_parameters);
   json.if_there("validation_k_step", r.validation_k_step), json.if_there("gain_of_search", r.gain_of_search);
   json.if_there("remained", r.remained), json.if_there("why_too_little", r.why_too_little);
+  json.if_there("free_rms", r.free_rms), json.if_there("validation_free_rms", r.validation_free_rms);
   json.if_there("doubts", r.doubts), json.if_there("kept", r.kept);
 }
 

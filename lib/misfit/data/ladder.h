@@ -28,6 +28,8 @@ struct Rung {
   std::map<std::string, std::vector<double>> k_step;    ///< channel → RMS at 1, 2, 4, 8, 16, 32 samples ahead [unit of rms]
   /// The same of what is held out; missing: nothing is, or it was not asked for.
   std::optional<std::map<std::string, std::vector<double>>> validation_k_step;
+  /// RMS per channel of its model fitted and run without a random force; missing: not asked for, or it does not follow the motion.
+  std::optional<std::map<std::string, Estimate>> free_rms, validation_free_rms;
   std::optional<Estimate> trim;                               ///< [rad]
   std::map<std::string, Estimate> parameters;                 ///< of the added effect, numbers alone
   std::optional<int> new_parameters;                          ///< free ones that its parent does not have, coefficients of curves too

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "misfit/core/duration.h"
 #include "misfit/core/text.h"
@@ -39,11 +40,12 @@ std::string ahead(int samples, const Fit* fit) {
 /// Of which data an error is: what was fitted, or what the fit has not seen.
 constexpr const char* in_estimation_data = " in the estimation data";
 constexpr const char* in_held_out_data = " in the held-out data";
+constexpr const char* in_a_free_run = " in a free run";
 
 /// With a random force the model is corrected at each measurement; a trajectory runs on from its initial state.
 std::string horizon_of(const Fit& fit) {
   if (!fit.force.empty()) return " one sample ahead";
-  return fit.method == trajectory_estimator().name ? " in a free run" : "";
+  return fit.method == trajectory_estimator().name ? in_a_free_run : "";
 }
 
 /// Of the errors at `ahead` in both, at the farthest horizon.
@@ -72,6 +74,17 @@ std::vector<ErrorChange> k_step_changes(const KSteps& first, const KSteps& last,
   return out;
 }
 
+/// Channels that both have.
+std::vector<ErrorChange> rms_changes(const std::map<std::string, Estimate>& first, const std::map<std::string, Estimate>& last,
+                                     const std::string& of) {
+  std::vector<ErrorChange> out;
+  for (const auto& [channel, rms] : first) {
+    if (const auto after = last.find(channel); after != last.end())
+      out.push_back(change_of(channel + of, rms.unit, rms.value, after->second.value));
+  }
+  return out;
+}
+
 /// Of what is held out: some samples ahead where both rungs know that, else one.
 std::vector<ErrorChange> held_out_changes(const Rung& first, const Rung& last, const std::string& far) {
   std::vector<ErrorChange> out;
@@ -79,23 +92,7 @@ std::vector<ErrorChange> held_out_changes(const Rung& first, const Rung& last, c
     out = k_step_changes(*first.validation_k_step, *last.validation_k_step, first.rms, far + in_held_out_data);
     std::erase_if(out, [](const ErrorChange& e) { return !std::isfinite(e.before.value) || !std::isfinite(e.after->value); });
   }
-  if (!out.empty()) return out;
-  for (const auto& [channel, rms] : first.validation_rms) {
-    const auto after = last.validation_rms.find(channel);
-    if (after != last.validation_rms.end())
-      out.push_back(change_of(channel + " one sample ahead" + in_held_out_data, rms.unit, rms.value, after->second.value));
-  }
-  return out;
-}
-
-/// The largest fall first, but a clear one of the error in what was measured before any of the random force, which says less.
-void most_telling_first(std::vector<ErrorChange>& errors) {
-  const auto rank = [](const ErrorChange& e) {
-    const double change = e.within_sigma() ? 0.0 : e.per_cent().value_or(0.0);
-    const bool measured = e.kind == ErrorKind::rms_error && change <= -clear_change;
-    return measured ? change - 100.0 : change;
-  };
-  std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
+  return !out.empty() ? out : rms_changes(first.validation_rms, last.validation_rms, std::string(" one sample ahead") + in_held_out_data);
 }
 
 std::string channel_of(const ErrorChange& e) { return e.kind == ErrorKind::rms_error ? e.of.substr(0, e.of.find(' ')) : ""; }
@@ -107,6 +104,25 @@ void put_beside(std::vector<ErrorChange> held_out, std::vector<ErrorChange>& err
         std::find_if(errors.begin(), errors.end(), [&](const ErrorChange& other) { return channel_of(other) == channel_of(e); });
     errors.insert(same == errors.end() ? same : same + 1, std::move(e));
   }
+}
+
+/// With what is held out behind it; empty where one of them has none.
+std::vector<ErrorChange> free_run_changes(const Rung& first, const Rung& last) {
+  if (!first.free_rms || !last.free_rms) return {};
+  std::vector<ErrorChange> out = rms_changes(*first.free_rms, *last.free_rms, std::string(in_a_free_run) + in_estimation_data);
+  if (first.validation_free_rms && last.validation_free_rms)
+    put_beside(rms_changes(*first.validation_free_rms, *last.validation_free_rms, std::string(in_a_free_run) + in_held_out_data), out);
+  return out;
+}
+
+/// The largest fall first, but a clear one of the error in what was measured before any of the random force, which says less.
+void most_telling_first(std::vector<ErrorChange>& errors) {
+  const auto rank = [](const ErrorChange& e) {
+    const double change = e.within_sigma() ? 0.0 : e.per_cent().value_or(0.0);
+    const bool measured = e.kind == ErrorKind::rms_error && change <= -clear_change;
+    return measured ? change - 100.0 : change;
+  };
+  std::stable_sort(errors.begin(), errors.end(), [&](const ErrorChange& a, const ErrorChange& b) { return rank(a) < rank(b); });
 }
 
 /// The change is below the digits that are shown.
@@ -141,6 +157,9 @@ std::vector<ErrorChange> errors_between(const Rung& first, const Rung& last, con
   }
   most_telling_first(out);
   put_beside(held_out_changes(first, last, far), out);
+  std::vector<ErrorChange> free = free_run_changes(first, last);
+  const bool telling = std::any_of(free.begin(), free.end(), is_telling);
+  out.insert(telling ? out.begin() : out.end(), std::make_move_iterator(free.begin()), std::make_move_iterator(free.end()));
   return out;
 }
 

@@ -109,6 +109,7 @@ class Extension {
       }
     }
     ladder_.last_rung();
+    ladder_.compare_free_runs();
     say_needless();
   }
 
