@@ -21,9 +21,7 @@ int add_verb(const Options& options, const Registry& registry) {
   const AskedPlace place = asked_place(options.at);  // first: wrong words change nothing
   ModelLadder ladder(options.session, registry);
   const std::optional<Candidate> prediction = prediction_for(ladder, options.effect, place);
-  ladder.add(options.effect, prediction);
-  ladder.compare_free_runs();
-  const Rung& rung = ladder.ladder().rungs.back();
+  const Rung& rung = ladder.add(options.effect, prediction);
   report_ladder(ladder);
   if (options.json) {
     print_file(ladder.root().folder.file("ladder.json"));

@@ -507,6 +507,24 @@ TEST(Verdict, AnErrorThatClearlyRisesIsSaidBesideOneThatFalls) {
   EXPECT_THAT(c.verdict().sentence, HasSubstr(" stays at "));
 }
 
+TEST(Verdict, OfOneThatPredictsWorseFartherAheadByItselfSaysThatTwoAreLookedFor) {
+  Case c;
+  Candidate friction = candidate("coulomb_friction", 1e-30, false);
+  friction.actual_drop = 610.0;
+  friction.held_out_gain = 1260.0;
+  friction.why = "predictions farther ahead get worse: their RMS errors grow by 28 %";
+  friction.grows_ahead = 1.28;
+  c.discovery = searched({friction}, SearchOutcome::best_rejected, "No effect accepted; " + best_rejected(friction) + ".");
+  Verdict v = c.verdict();
+  EXPECT_THAT(v.sentence,
+              HasSubstr("grow by 28 %. Something else may be missing beside it, with which they do not: --auto looks for both"));
+  EXPECT_EQ(v.next, "misfit discover configs/motor --auto");
+  Candidate larger = candidate("input_dead_zone", 1e-40, false);
+  larger.actual_drop = 700.0;
+  c.discovery = searched({larger, friction}, SearchOutcome::best_rejected, "No effect accepted; " + best_rejected(larger) + ".");
+  EXPECT_THAT(c.verdict().sentence, Not(HasSubstr("beside it"))) << "another one is spoken of";
+}
+
 TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
   Case c;
   c.add_effect();

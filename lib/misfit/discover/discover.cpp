@@ -202,7 +202,17 @@ class Search {
     rank_candidates(out_.candidates);
   }
 
-  void describe_search(const std::optional<Unexplained>& unexplained) {
+  /// Where no effect describes the curve, though one describes what these data cannot tell from it: that.
+  std::optional<Unexplained> or_what_can_be_added(std::optional<Unexplained> unexplained) const {
+    if (!unexplained || !unexplained->curve || !unexplained->effects.empty() || !unexplained->curve->memory.empty()) return unexplained;
+    for (const UnknownCurve& alike : curves_alike(*unexplained->curve, unknown_, scores(), options_.p_accept)) {
+      if (Unexplained instead = unexplained_by(alike, unknown_, context()); !instead.effects.empty()) return instead;
+    }
+    return unexplained;
+  }
+
+  void describe_search(std::optional<Unexplained> unexplained) {
+    unexplained = or_what_can_be_added(std::move(unexplained));
     out_.force = random_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";

@@ -98,11 +98,9 @@ const std::string& name_of(const UnknownPlace& place, const ScoreWork& work) {
                                         : system.quantity_ports[work.force.parameters()[place.index]].name;
 }
 
-/// A parameter may depend on what does not depend on parameters itself: nothing else could be added to the model.
-bool is_tested(const UnknownPlace& place, const Features& f, const ScoreWork& work) {
+bool is_tested(const UnknownPlace& place, const std::string& quantity, const ScoreWork& work) {
   if (place.kind != PortKind::quantity) return true;
-  const SystemSpec& system = work.estimate.model.system->spec();
-  return f.index < system.base_quantities && is_more_than_a_force(system.quantity_ports[work.force.parameters()[place.index]], f.quantity);
+  return is_more_than_a_force(work.estimate.model.system->spec().quantity_ports[work.force.parameters()[place.index]], quantity);
 }
 
 UnknownCurve unknown_curve_at(const ScoreWork& work, const UnknownPlace& place, const Features& f) {
@@ -143,7 +141,7 @@ UnknownTests tests_of_unknown_curves(const ScoreWork& work) {
   const std::vector<UnknownPlace> places = places_of_unknown_curves(work);
   for (const Features& f : out.features) {
     for (const UnknownPlace& place : places) {
-      if (is_tested(place, f, work)) out.tests.push_back({&f, place});
+      if (is_tested(place, f.quantity, work)) out.tests.push_back({&f, place});
     }
   }
   for (const Features& f : out.pasts) {

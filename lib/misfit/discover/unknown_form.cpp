@@ -35,6 +35,14 @@ std::map<std::string, std::string> roles_at(const EffectSpec& spec, const std::s
 /// It is of a quantity of the system: not of time, nor of the past of an input.
 bool can_be_read(const UnknownCurve& curve, const SystemSpec& system) { return index_of(system.quantities, curve.quantity) >= 0; }
 
+/// An effect of unknown form describes it. What changes a parameter reads states, inputs as they were recorded, and what depends on no
+/// parameter (Assembler::check_order).
+bool can_be_added(const UnknownCurve& curve, const SystemSpec& system) {
+  if (!can_be_read(curve, system)) return false;
+  const bool changes = curve.kind == PortKind::quantity, is_input = index_of(system.inputs, curve.quantity) >= 0;
+  return !changes || is_input || index_of(system.quantities, curve.quantity) < system.base_quantities;
+}
+
 /// All columns in units of their lengths.
 Eigen::MatrixXd normalised(Eigen::MatrixXd columns) {
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {
@@ -153,7 +161,7 @@ std::vector<EffectPlace> effects_of_unknown_form(const UnknownCurve& unexplained
   for (const UnknownCurve& curve : screened) {
     const bool same_place = curve.kind == unexplained.kind && curve.port == unexplained.port;
     const bool same_quantity = curve.quantity == unexplained.quantity || curve.quantity == unexplained.other;
-    if (same_place && same_quantity && can_be_read(curve, system)) curves.push_back(&curve);
+    if (same_place && same_quantity && can_be_added(curve, system)) curves.push_back(&curve);
   }
   std::stable_sort(curves.begin(), curves.end(), [](const UnknownCurve* a, const UnknownCurve* b) { return a->log_p < b->log_p; });
   std::vector<EffectPlace> out;
@@ -175,7 +183,7 @@ std::vector<Candidate> candidates_of_unknown_form(const ScoreWork& work, const E
   std::vector<UnknownCurve> narrow = narrow_curves(work);
   families += static_cast<double>(narrow.size());
   std::vector<UnknownCurve> curves = with_narrow_ones(unknown_curves(work), std::move(narrow));
-  std::erase_if(curves, [&](const UnknownCurve& curve) { return curve.kind != kind_of(spec) || !can_be_read(curve, system); });
+  std::erase_if(curves, [&](const UnknownCurve& curve) { return curve.kind != kind_of(spec) || !can_be_added(curve, system); });
   std::stable_sort(curves.begin(), curves.end(), [](const UnknownCurve& a, const UnknownCurve& b) { return a.log_p < b.log_p; });
   std::vector<Candidate> out;
   for (const UnknownCurve& curve : curves) {

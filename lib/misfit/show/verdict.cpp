@@ -319,8 +319,8 @@ class VerdictBuilder {
 
   /// discover --auto would look for what is missing beside the best one, and has not.
   [[nodiscard]] bool looks_for_two(const Discovery& d) const {
-    const Candidate* first = candidate_short_ahead(d);
-    return first != nullptr && why_taken_off(effect_at(first->effect, first->roles)) == nullptr;
+    const Candidate* first = d.candidates.empty() ? nullptr : candidate_short_ahead(d);
+    return first != nullptr && first == &d.candidates.front() && why_taken_off(effect_at(first->effect, first->roles)) == nullptr;
   }
 
   void nothing_accepted(const Discovery& d) {

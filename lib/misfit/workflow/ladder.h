@@ -40,8 +40,8 @@ class ModelLadder {
   /// Notes of what was added and taken off again, as effect_at() says it, that it gains too little beside the last rung's model, and why.
   void gained_too_little(const std::string& effect, const std::string& why);
 
-  /// Where the study asks for output_error and the first rung's follows the motion, that of the last rung: errors of free runs before and
-  /// after.
+  /// Where output_error of the study's own model has been fitted, as the study asks, and follows the motion, that of the last rung, too:
+  /// errors of free runs before and after.
   void compare_free_runs();
 
   /// From now on a rung's fit has a time limit where nobody gives one (usual_limit()): nobody waits for it.

@@ -167,7 +167,13 @@ class Extension {
     const std::string name = effect_at(first->effect, first->roles);
     if (!can_be_added(*first)) return false;
     ladder_.root().note(name + " predicts worse farther ahead by itself: it stays if something else is missing beside it that mends this");
-    if (add_beside(name, without)) return true;
+    const int rung = ladder_.ladder().rungs.back().id;
+    try {
+      if (add_beside(name, without)) return true;
+    } catch (...) {  // an interrupt, a limit of time: by itself it is refused
+      ladder_.remove(std::to_string(rung));
+      throw;
+    }
     ladder_.root().note(name + ": nothing was found beside which it predicts no worse farther ahead: its rung is taken off");
     take_off_last();
     ladder_.gained_too_little(name, "by itself, " + first->why + ", and nothing was found that mends this");
