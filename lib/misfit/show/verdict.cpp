@@ -354,10 +354,10 @@ class VerdictBuilder {
             add_by_hand(best), VerdictKind::not_decided);
     } else if (d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
-      if (looks_for_two(d))
-        return say(VerdictKind::not_decided,
-                   as_sentence(d.verdict) + " Something else may be missing beside it, with which they do not: --auto looks for both",
-                   command("discover") + " --auto");
+      if (looks_for_two(d)) {
+        const char* both = " Something else may be missing beside it, with which they do not: --auto looks for both";
+        return say(VerdictKind::not_decided, as_sentence(d.verdict) + both, command("discover") + " --auto");
+      }
       say(VerdictKind::not_decided, as_sentence(d.verdict) + (by_hand(best).empty() ? "" : " " + by_hand(best)), add_by_hand(best));
     } else if (d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, as_sentence(d.verdict) + " Write one as a formula under [effects]", "misfit help study");
