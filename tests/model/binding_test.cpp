@@ -129,7 +129,7 @@ TEST(Binding, ABorrowedCoefficientThatNobodyHasIsAnError) {
     static_cast<void>(assemble(r, registry()));
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("'C_m', and no effect of the model has one"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("'C_m', and no effect of the model has one: static_moment has one, and comes first"));
   }
 }
 

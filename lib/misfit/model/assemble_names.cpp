@@ -1,12 +1,29 @@
 // What things are called in a model, and where a name leads.
 
+#include <algorithm>
+
 #include "misfit/core/shown.h"
+#include "misfit/core/text.h"
 #include "misfit/core/units.h"
 #include "misfit/model/assembler.h"
 #include "misfit/model/does_not_suit.h"
 #include "misfit/model/role_units.h"
 
 namespace misfit {
+namespace {
+
+/// ": coulomb_friction has one, and comes first"; empty: no effect that there is has one.
+std::string who_has(const std::string& coefficient, const Registry& registry) {
+  std::vector<std::string> out;
+  for (const std::string& key : registry.effect_keys()) {
+    const auto& all = registry.effect(key).spec().coefficients;
+    if (std::any_of(all.begin(), all.end(), [&](const CoefficientSpec& c) { return !c.shared && coefficient == c.name; }))
+      out.push_back(key);
+  }
+  return out.empty() ? "" : ": " + join_words(out) + (out.size() > 1 ? " have one; one of them comes first" : " has one, and comes first");
+}
+
+}  // namespace
 
 void Assembler::name_coefficients() {
   names_.clear();
@@ -57,7 +74,7 @@ void Assembler::share_coefficients() {
       if (!lent) {
         throw DoesNotSuit(request_.effects[i].where,
                           "effect '" + shown(user.name) + "' changes what another effect adds by its coefficient '" + coefficients[c].name +
-                              "', and no effect of the model has one" + suggest(coefficients[c].name, owned_names()));
+                              "', and no effect of the model has one" + who_has(coefficients[c].name, registry_));
       }
       if (lent->curve >= 0) {
         const Curve& curve = model_.curves[lent->curve];
@@ -76,16 +93,6 @@ std::optional<BoundCoefficient> Assembler::owned_coefficient(const std::string& 
     }
   }
   return std::nullopt;
-}
-
-std::vector<std::string> Assembler::owned_names() const {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < model_.effects.size(); ++i) {
-    for (const auto& c : effect(i).spec().coefficients) {
-      if (!c.shared) names.emplace_back(c.name);
-    }
-  }
-  return names;
 }
 
 std::string Assembler::curve_in_request(const std::string& name) const {

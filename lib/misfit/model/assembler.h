@@ -44,7 +44,6 @@ class Assembler {
   /// Shared coefficients, once all effects are bound: that of the first effect which owns one of the name.
   void share_coefficients();
   std::optional<BoundCoefficient> owned_coefficient(const std::string& name) const;
-  std::vector<std::string> owned_names() const;
   /// What the request calls the curve; its name in the model where nothing is requested of it.
   std::string curve_in_request(const std::string& name) const;
   /// What the study asks of a coefficient as a curve, else what its specification says; nullopt: a number.
