@@ -77,6 +77,9 @@ class ModelLadder {
   Ladder ladder_;
 };
 
+/// Growth of the longest predictions' errors (growth_of_errors()), the larger one of what is fitted and of what is held out.
+[[nodiscard]] double largest_growth(const Rung& before, const Rung& after);
+
 /// What discovery says of the effect for the last rung: roles, where to start, the drop it predicts. Asked before the effect is added, so
 /// that the prediction is one. nullopt for a change of system, which no discovery ranks. InputError as ModelLadder::add and
 /// predict_effect().

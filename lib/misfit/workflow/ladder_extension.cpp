@@ -73,13 +73,6 @@ std::vector<double> twice_as_many(const std::vector<double>& knots) {
   return out;
 }
 
-/// Of the longest predictions, in what is fitted or in what is held out.
-double largest_growth(const Rung& before, const Rung& after) {
-  const double fitted = growth_of_errors(before.k_step, after.k_step);
-  if (!before.validation_k_step || !after.validation_k_step) return fitted;
-  return std::max(fitted, growth_of_errors(*before.validation_k_step, *after.validation_k_step));
-}
-
 std::string in_words(const std::string& name, const Without& without, double families) {
   return fmt::format("{} is no longer significant beside what was added after it (a drop of {}, among {:g} that were tried)", name,
                      format_value(without.drop), families);
@@ -94,9 +87,7 @@ class Extension {
     constexpr int most_rungs = 12;
     ladder_.limit_fits();
     for (int k = 0; k < most_rungs; ++k) {
-      const Discovery discovery = discovered(ladder_.last());
-      if (listener_.discovered) listener_.discovered(discovery);
-      families_ = static_cast<double>(discovery.candidates.size());
+      const Discovery discovery = search();
       const std::optional<Candidate> next = accepted_candidate(discovery, registry_);
       if (next && has_left(*next)) break;
       if (is_of_a_hold(next, discovery)) break;
@@ -114,6 +105,14 @@ class Extension {
   }
 
  private:
+  /// What the last rung could be missing.
+  Discovery search() {
+    Discovery out = discovered(ladder_.last());
+    if (listener_.discovered) listener_.discovered(out);
+    families_ = static_cast<double>(out.candidates.size());
+    return out;
+  }
+
   /// The next rung would stand for an input that is held otherwise between its samples than the model says: that is to be mended first,
   /// since what is found beside it may stand for it, too.
   [[nodiscard]] static bool is_of_a_hold(const std::optional<Candidate>& next, const Discovery& discovery) {
@@ -163,30 +162,31 @@ class Extension {
   bool begin_with_two(const Discovery& discovery) {
     const Candidate* first = candidate_short_ahead(discovery);
     if (first == nullptr || has_left(*first)) return false;
-    const int without = ladder_.last_rung().id;
-    const std::string name = effect_at(first->effect, first->roles);
-    if (!can_be_added(*first)) return false;
-    ladder_.root().note(name + " predicts worse farther ahead by itself: it stays if something else is missing beside it that mends this");
-    const int rung = ladder_.ladder().rungs.back().id;
-    try {
-      if (add_beside(name, without)) return true;
-    } catch (...) {  // an interrupt, a limit of time: by itself it is refused
-      ladder_.remove(std::to_string(rung));
-      throw;
-    }
-    ladder_.root().note(name + ": nothing was found beside which it predicts no worse farther ahead: its rung is taken off");
-    take_off_last();
-    ladder_.gained_too_little(name, "by itself, " + first->why + ", and nothing was found that mends this");
+    if (can_be_added(*first) && holds_beside_another(*first)) return true;
+    ladder_.gained_too_little(effect_at(first->effect, first->roles), why_off_);
     return false;
   }
-  /// The first effect, of those that may be missing beside the last rung's, with which predictions are no worse than in rung `without`.
-  bool add_beside(const std::string& name, int without) {
-    const Discovery beside = discovered(ladder_.last());
-    if (listener_.discovered) listener_.discovered(beside);
-    families_ = static_cast<double>(beside.candidates.size());
-    for (const Candidate& second : candidates_beside(beside)) {
+  /// Of the last rung's, which by itself is refused. False: its rung is off again.
+  bool holds_beside_another(const Candidate& first) {
+    const std::string name = effect_at(first.effect, first.roles);
+    const Rung alone = ladder_.ladder().rungs.back(), without = rung_of(alone.parent);
+    ladder_.root().note(name + " predicts worse farther ahead by itself: it stays if something else is missing beside it that mends this");
+    try {
+      if (add_beside(name, without)) return true;
+    } catch (...) {  // an interrupt, a limit of time
+      ladder_.remove(std::to_string(alone.id));
+      throw;
+    }
+    why_off_ = "by itself, " + first.why + ", and nothing was found that mends this";
+    ladder_.root().note(name + ": " + why_off_ + ": its rung is taken off");
+    take_off_last();
+    return false;
+  }
+  /// The first effect, of those that may be missing beside the last rung's, with which predictions are no worse than `without` both.
+  bool add_beside(const std::string& name, const Rung& without) {
+    for (const Candidate& second : candidates_beside(search())) {
       if (has_left(second) || !can_be_added(second)) continue;
-      const double growth = largest_growth(rung_of(without), ladder_.ladder().rungs.back());
+      const double growth = largest_growth(without, ladder_.ladder().rungs.back());
       if (!(growth > 1.0)) return true;
       ladder_.root().note(fmt::format("with {} and {} {}: the rung of the latter is taken off", name,
                                       effect_at(second.effect, second.roles), growth_in_words(growth)));

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "misfit/data/estimators.h"
+#include "misfit/fit/filter/k_step.h"
 #include "misfit/workflow/estimate/estimate.h"
 #include "misfit/workflow/ladder.h"
 
@@ -17,6 +18,12 @@ bool follows_the_motion(const Fit& fit) {
 }
 
 }  // namespace
+
+double largest_growth(const Rung& before, const Rung& after) {
+  const double fitted = growth_of_errors(before.k_step, after.k_step);
+  if (!before.validation_k_step || !after.validation_k_step) return fitted;
+  return std::max(fitted, growth_of_errors(*before.validation_k_step, *after.validation_k_step));
+}
 
 void ModelLadder::compare_free_runs() {
   const std::string trajectory = trajectory_estimator().name;
