@@ -16,7 +16,7 @@ struct Ripple {
   static constexpr const char* symbols =
       "cosine, sine amplitudes [port], spacing after which the force recurs [displacement], rate [any] of the displacement [any] (of which "
       "only the size is used)";
-  static constexpr const char* valid = "one harmonic; over several spacings: over less than two it is one of many curves";
+  static constexpr const char* valid = "one harmonic; over several spacings: over less than one and a half it is one of many curves";
   static constexpr const char* size = "cogging of a motor with permanent magnets: some per cent of its rated torque";
   static constexpr const char* source =
       "Fourier; Hanselman, Brushless Permanent Magnet Motor Design, 2nd ed. (2003), chapter 5: cogging torque recurs with the angle";

@@ -1,7 +1,8 @@
 // A force that recurs along the way: a slide whose screw is bent (once per pitch), and a motor that favours some angles (cogging), of
 // which only the speed is a state.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -81,6 +82,20 @@ TEST(AForceThatRecursAlongTheWay, IsFoundWithItsSpacing) {
 TEST(AForceThatRecursAlongTheWay, IsNotFoundWhereThereIsNone) {
   const Discovery found = Found(with_a_bent_screw(0.0, 6), slide_text).discover_missing();
   EXPECT_EQ(found.outcome, SearchOutcome::none_missing) << found.verdict;
+}
+
+/// 0.4 of a spacing is visited: a spring that is not straight.
+TEST(AForceThatRecursAlongTheWay, IsOneOfManyCurvesWhereItWasNotSeenToRecur) {
+  const Discovery found =
+      Found(slide({.seed = 9}, [](double x) { return 2.0 * std::sin(2.0 * std::numbers::pi * x / 0.9); }), slide_text).discover_missing();
+  const auto ripple =
+      std::find_if(found.candidates.begin(), found.candidates.end(), [](const Candidate& c) { return c.effect == "ripple"; });
+  ASSERT_NE(ripple, found.candidates.end());
+  ASSERT_TRUE(ripple->actual_drop) << "it is refitted";
+  EXPECT_FALSE(ripple->accepted);
+  EXPECT_THAT(ripple->why, testing::HasSubstr("along which it does not recur"));
+  EXPECT_EQ(found.outcome, SearchOutcome::unknown_form) << found.verdict;
+  EXPECT_EQ(found.unexplained_quantity, "x");
 }
 
 TEST(AForceThatRecursWithTheAngleTurned, IsFoundWhereOnlyTheSpeedIsAState) {

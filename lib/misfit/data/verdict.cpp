@@ -32,7 +32,7 @@ void fields(Archive& json, MaybeConst<ErrorChange> auto& e) {
 
 template <class Archive>
 void fields(Archive& json, MaybeConst<Verdict> auto& v) {
-  json("verdict", NameOf(v.kind, verdict_names)), json("sentence", v.sentence), json("where", v.where);
+  json("verdict", NameOf(v.kind, verdict_names)), json("sentence", v.sentence), json("notes", v.notes), json("where", v.where);
   json("errors", v.errors), json("added", v.added), json("doubts", v.doubts), json("parameters", v.parameters), json("trim", v.trim),
       json("next", v.next);
 }

@@ -52,6 +52,7 @@ struct ErrorChange {
 struct Verdict {
   VerdictKind kind = VerdictKind::no_result;
   std::string sentence;
+  std::vector<std::string> notes;   ///< sentences below it: what was tried in vain, what it cannot be told from, why it is not certain
   std::string where;                ///< where the study's own model fails, in a sentence; empty: nowhere that stands out
   std::vector<ErrorChange> errors;  ///< the most telling first
   std::vector<std::string> added;   ///< effects of the ladder with their estimates in its last model, a line each
@@ -62,7 +63,7 @@ struct Verdict {
 };
 
 /// verdict.json:
-/// {"verdict","sentence","where","errors":[{"what","before":{"value","sigma","unit"},"after","change_per_cent","remark"}],"added","doubts","parameters","trim","next"};
+/// {"verdict","sentence","notes":["…"],"where","errors":[{"what","before":{"value","sigma","unit"},"after","change_per_cent","remark"}],"added","doubts","parameters","trim","next"};
 /// null for what is not known.
 void write_verdict(const std::filesystem::path& path, const Verdict& verdict);
 

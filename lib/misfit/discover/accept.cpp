@@ -74,9 +74,9 @@ std::string reason_against(RankedCandidate& e, HeldOut& held_out, const SearchCo
   const Model& refitted = e.refit->estimate.model;
   const auto memory = outlasts_recording(refitted, refitted.effects.back(), longest_recording(context.experiments));
   const auto off_steps = off_whole_steps(refitted, context.experiments);
-  const auto no_edge = edge_not_visited(e.refit->estimate);
+  const auto no_edge = edge_not_visited(e.refit->estimate), no_wave = recurs_nowhere(e.refit->estimate);
   const auto idle = idle_input(e.refit->estimate), no_limit = hardly_reached(e.refit->estimate);
-  e.degenerate = memory || off_steps || no_edge || idle || no_limit || !e.refit->partial.empty();
+  e.degenerate = memory || off_steps || no_edge || no_wave || idle || no_limit || !e.refit->partial.empty();
   if (idle) return *idle + " acts nowhere in the model, so that nothing of what it does can be " + c.effect + ": input_gain comes first";
   if (!e.refit->partial.empty()) return "only a part of it is found: " + e.refit->partial;
   if (const auto bound = ends_at_bound(refitted, e.screening->candidate_model->strengths)) return *bound;
@@ -87,6 +87,7 @@ std::string reason_against(RankedCandidate& e, HeldOut& held_out, const SearchCo
   if (memory) return "its " + *memory;
   if (off_steps) return *off_steps;
   if (no_edge) return *no_edge;
+  if (no_wave) return *no_wave;
   if (no_limit) return *no_limit;
   if (!c.held_out_gain) c.held_out_gain = held_out.gain(e.refit->estimate);
   const bool gains = *c.held_out_gain > least_held_out_gain(estimated_parameters(*e.refit));

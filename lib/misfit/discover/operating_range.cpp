@@ -162,6 +162,11 @@ std::optional<OperatingRange::Range> OperatingRange::range_of_edge(const BoundEf
   return scanned_size(scan).kind == ScannedSize::Kind::range && !scan.is_frequency() ? range(scanned_quantity(effect, scan)) : std::nullopt;
 }
 
+std::optional<OperatingRange::Range> OperatingRange::range_of_wave(const BoundEffect& effect, std::size_t coefficient) const {
+  const ScanSpec& scan = effect.effect->spec().coefficients[coefficient].scan;
+  return scan.is_frequency() ? range(scanned_quantity(effect, scan)) : std::nullopt;
+}
+
 namespace {
 
 /// Of the shortest such time that is looked for. Shorter ones look alike, and take ever more steps of integration.

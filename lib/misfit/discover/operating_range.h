@@ -32,6 +32,9 @@ class OperatingRange {
 
   /// range() of the quantity on whose values a shape is an edge (ScanSpec::over names it plainly); nullopt: it is none, or not known.
   [[nodiscard]] std::optional<Range> range_of_edge(const BoundEffect& effect, std::size_t coefficient) const;
+  /// range() of the quantity along which a shape is the way after which something recurs (ScanSpec::is_frequency, over a role); nullopt: it
+  /// is none, or not known.
+  [[nodiscard]] std::optional<Range> range_of_wave(const BoundEffect& effect, std::size_t coefficient) const;
 
   /// Lower bound of a shape: its own, or what the filter resolves of the quantity that it smooths; of a time that its effect keeps fixed
   /// and that is looked for in sampling intervals, a fifth of the shortest that is looked for.

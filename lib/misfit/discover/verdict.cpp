@@ -242,6 +242,23 @@ std::optional<std::string> edge_not_visited(const FilterEstimate& estimate) {
   return std::nullopt;
 }
 
+std::optional<std::string> recurs_nowhere(const FilterEstimate& estimate) {
+  constexpr double least = 1.5;  // spacings
+  const OperatingRange visited(estimate);
+  const BoundEffect& effect = estimate.model.effects.back();
+  for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
+    if (effect.coefficients[c].parameter < 0) continue;
+    const auto range = visited.range_of_wave(effect, c);
+    if (!range) continue;
+    const Parameter& p = estimate.model.parameters[effect.coefficients[c].parameter];
+    const double way = range->high - range->low;
+    if (way >= least * p.value) continue;
+    return "its " + p.name + " = " + in_display_unit(p.value, p.unit) + " is more than two thirds of what was visited, " +
+           in_display_unit(way, p.unit) + ", along which it does not recur: there it is one of many curves";
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> hardly_reached(const FilterEstimate& estimate) {
   constexpr double least = 0.02, at_the_limit = 0.99;
   const BoundEffect& effect = estimate.model.effects.back();

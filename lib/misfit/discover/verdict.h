@@ -66,6 +66,10 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
 /// of the visited range outside of it: there the effect is on, or off, all the time. nullopt: all lie inside, or it has none.
 [[nodiscard]] std::optional<std::string> edge_not_visited(const FilterEstimate& estimate);
 
+/// "its spacing = 0.89 V is more than two thirds of the 0.37 V that were visited: …" where the model's last effect recurs along a way of
+/// which less than one and a half of its spacings was visited: there it is one of many curves. nullopt: more, or it does not recur.
+[[nodiscard]] std::optional<std::string> recurs_nowhere(const FilterEstimate& estimate);
+
 /// "its rate_limit = 930 N/s is reached in 0.4 % of the samples alone" where a limit of the rate of an own state of the model's last effect
 /// (ScanSpec::over is "|ROLE|/step") is reached in less than 2 % of the filtered samples: the effect is what it is without the limit, and
 /// what that gains is a few samples. nullopt: it is reached more often, or no such limit is among its coefficients.

@@ -87,6 +87,12 @@ class VerdictBuilder {
     out_.sentence = as_sentence(sentence);
     out_.next = next;
   }
+  /// What stands below the sentence.
+  void note(const std::string& words) { out_.notes.push_back(as_sentence(words)); }
+  /// Of words that begin with the name of an effect, which keeps its small letters.
+  void note_of_effect(const std::string& words) {
+    if (!words.empty()) out_.notes.push_back(words + ".");
+  }
   [[nodiscard]] std::string command(const std::string& verb, const std::string& effect = "") const {
     return misfit_command(verb, in_.study, effect, in_.out);
   }
@@ -235,10 +241,9 @@ class VerdictBuilder {
 
   /// The search has accepted it, and its rung has gained too little.
   void taken_off(const Candidate& best, const std::string& why) {
-    const std::string words = "whether " + std::string(effects_added_ ? "more" : "something") +
-                              " is missing is not decided: " + effect_at(best.effect, best.roles) +
-                              " was accepted, added and taken off again, since once fitted " + why;
+    const std::string words = "whether " + std::string(effects_added_ ? "more" : "something") + " is missing is not decided";
     effects_added_ ? added(words, export_command(), VerdictKind::not_decided) : say(VerdictKind::not_decided, words, export_command());
+    note_of_effect(effect_at(best.effect, best.roles) + " was accepted, added and taken off again, since once fitted " + why);
   }
 
   void missing(const Candidate& best) {
@@ -248,6 +253,10 @@ class VerdictBuilder {
       sentence += "; with " + names_added(*in_.ladder) + " " + change;
     say(best.group.size() > 1 && !best.holds ? VerdictKind::several_possible : VerdictKind::missing, sentence,
         best.holds ? hold_otherwise(*best.holds) : command("add", best.effect));
+    if (best.holds)
+      note("the right hold comes first, since what is found beside a wrong one may stand for it");
+    else if (best.also)
+      note(*best.also);
   }
   /// The command that sets what inputs are between their samples, and runs the study again.
   [[nodiscard]] std::string hold_otherwise(const std::map<std::string, std::string>& holds) const {
@@ -283,21 +292,18 @@ class VerdictBuilder {
     return nullptr;
   }
 
-  /// "; X was added as a curve of unknown form and taken off again: …" of each that is not untried(): what was tried, and the number that
-  /// decided.
-  [[nodiscard]] std::string curves_in_vain(const std::vector<EffectPlace>& curves) const {
-    std::string out;
+  /// Of each that is not untried(): what was tried, and the number that decided.
+  void note_curves_in_vain(const std::vector<EffectPlace>& curves) {
     for (const EffectPlace& curve : curves) {
       const std::string name = effect_at(curve.effect, curve.roles);
       const std::string* why = why_taken_off(name);
       if (on_ladder(curve)) {
-        out += fmt::format("; its curve of unknown form, {}, is in the last model already and leaves this", name);
+        note(fmt::format("its curve of unknown form, {}, is in the last model already and leaves this", name));
       } else {
-        out += fmt::format("; a curve of unknown form in its place, {}, was added and taken off again", name);
-        if (why != nullptr) out += ": " + *why;
+        note(fmt::format("a curve of unknown form in its place, {}, was added and taken off again{}", name,
+                         why == nullptr ? "" : ": " + *why));
       }
     }
-    return out;
   }
 
   [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
@@ -323,44 +329,46 @@ class VerdictBuilder {
     return first != nullptr && first == &d.candidates.front() && why_taken_off(effect_at(first->effect, first->roles)) == nullptr;
   }
 
+  void missing_of_unknown_form(const Discovery& d) {
+    const std::string words = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
+                                          effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
+    const EffectPlace* curve = untried(d.unexplained_effects);
+    const Candidate* nearest = nearest_of_library(d);
+    const bool left_by_curve = std::any_of(d.unexplained_effects.begin(), d.unexplained_effects.end(),
+                                           [this](const EffectPlace& place) { return on_ladder(place); });  // between its knots, too
+    const std::string next = curve != nullptr                       ? command("add", curve->effect) + at_place(curve->roles)
+                             : nearest != nullptr && !left_by_curve ? add_by_hand(*nearest)
+                                                                    : command("open");
+    effects_added_ ? added(words, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, words, next);
+    if (!d.unexplained_alike.empty()) note("these data cannot distinguish it from " + join_words(d.unexplained_alike));
+    if (nearest != nullptr)
+      note(fmt::format("of the library {} comes nearest (drop {}), and leaves {}", effect_at(nearest->effect, nearest->roles),
+                       format_value(*nearest->actual_drop), *nearest->remaining));
+    if (curve != nullptr) return;
+    note_curves_in_vain(d.unexplained_effects);
+    note("look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help system)");
+  }
+
   void nothing_accepted(const Discovery& d) {
     if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
       say(VerdictKind::not_decided, d.verdict, command("discover") + more_time(d.outcome));
     } else if (!d.unexplained_port.empty()) {
       if (const ForcePulses* pulses = pulses_left()) return missing_in_pulses(*pulses);
-      std::string unknown = fmt::format("something is {}missing that depends on {}: {} that no effect of the library explains",
-                                        effects_added_ ? "still " : "", d.unexplained_quantity, unexplained_place(d));
-      if (!d.unexplained_alike.empty()) unknown += "; these data cannot distinguish it from " + join_words(d.unexplained_alike);
       if (const Candidate* first = candidate_to_begin_with(d); first != nullptr && first->holds) return missing(*first);
-      const EffectPlace* curve = untried(d.unexplained_effects);
-      const Candidate* nearest = nearest_of_library(d);
-      if (nearest != nullptr)
-        unknown += fmt::format("; {} of the library comes nearest (drop {}), and leaves {}", effect_at(nearest->effect, nearest->roles),
-                               format_value(*nearest->actual_drop), *nearest->remaining);
-      if (curve == nullptr) {
-        unknown += curves_in_vain(d.unexplained_effects) +
-                   "; look where it fails, then write the effect as one line of the study (misfit help study, its formula: misfit help "
-                   "system)";
-      }
-      const bool left_by_curve = std::any_of(d.unexplained_effects.begin(), d.unexplained_effects.end(),
-                                             [this](const EffectPlace& place) { return on_ladder(place); });  // between its knots, too
-      const std::string next = curve != nullptr                       ? command("add", curve->effect) + at_place(curve->roles)
-                               : nearest != nullptr && !left_by_curve ? add_by_hand(*nearest)
-                                                                      : command("open");
-      effects_added_ ? added(unknown, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, unknown, next);
+      missing_of_unknown_form(d);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
-      added("whether more is missing is not decided; " + best_rejected(best) + (by_hand(best).empty() ? "" : "; " + by_hand(best)),
-            add_by_hand(best), VerdictKind::not_decided);
+      added("whether more is missing is not decided", add_by_hand(best), VerdictKind::not_decided);
+      note(best_rejected(best));
+      note_of_effect(by_hand(best));
     } else if (d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
-      if (looks_for_two(d)) {
-        const char* both = " Something else may be missing beside it, with which they do not: --auto looks for both";
-        return say(VerdictKind::not_decided, as_sentence(d.verdict) + both, command("discover") + " --auto");
-      }
-      say(VerdictKind::not_decided, as_sentence(d.verdict) + (by_hand(best).empty() ? "" : " " + by_hand(best)), add_by_hand(best));
+      const bool two = looks_for_two(d);
+      say(VerdictKind::not_decided, d.verdict, two ? command("discover") + " --auto" : add_by_hand(best));
+      two ? note("something else may be missing beside it, with which they do not: --auto looks for both") : note_of_effect(by_hand(best));
     } else if (d.outcome == SearchOutcome::none_suits) {
-      say(VerdictKind::not_decided, as_sentence(d.verdict) + " Write one as a formula under [effects]", "misfit help study");
+      say(VerdictKind::not_decided, d.verdict, "misfit help study");
+      note("write one as a formula under [effects]");
     } else if (const ForcePulses* pulses = pulses_left()) {
       missing_in_pulses(*pulses);
     } else if (effects_added_) {
@@ -406,8 +414,9 @@ class VerdictBuilder {
     const bool remains = in_.discovery == nullptr || in_.discovery->outcome != SearchOutcome::none_missing;
     std::vector<std::string> clauses = added_in_clauses({*in_.ladder, out_.errors, out_.doubts, remains, change_by_ladder()});
     clauses.push_back(rest);
-    for (std::string& doubt : doubts_in_clauses(*in_.ladder, out_.doubts)) clauses.push_back(std::move(doubt));
     say(kind, fmt::format("{}", fmt::join(clauses, "; ")), next);
+    if (!out_.doubts.empty()) note("what was added may stand for something else, since the last model is doubtful");
+    note_of_effect(begun_in_words(*in_.ladder));
     const bool begins_with_words = clauses.front().starts_with("a ") || clauses.front().starts_with("an ");
     if (!begins_with_words) out_.sentence.replace(0, 1, clauses.front(), 0, 1);  // names of effects keep their small letters
   }
@@ -421,20 +430,5 @@ class VerdictBuilder {
 }  // namespace
 
 Verdict verdict_of(const VerdictInput& input) { return VerdictBuilder(input).verdict(); }
-
-Blocks blocks_of(const Verdict& v) {
-  Blocks out;
-  out.heading("Verdict");
-  out.paragraph(v.sentence, Tone::lead);
-  out.paragraph(v.where);
-  std::vector<std::string> errors = v.added;
-  if (!v.parameters.empty()) errors.push_back("parameters of the fitted model: " + v.parameters);
-  for (const std::string& doubt : v.doubts) errors.push_back("doubtful: " + doubt);
-  for (const ErrorChange& e : v.errors) errors.push_back(e.what() + ": " + shown(e));
-  if (v.trim) errors.push_back(v.trim->what() + ": " + shown(*v.trim));
-  out.list({errors});
-  if (!v.next.empty()) out.paragraph("next: " + v.next, Tone::command);
-  return out;
-}
 
 }  // namespace misfit

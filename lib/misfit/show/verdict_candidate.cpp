@@ -19,10 +19,9 @@ std::string with_values(const Candidate& best) {
 }  // namespace
 
 std::string missing_in_words(const Candidate& best, bool still) {
-  const std::string also = best.also ? "; " + *best.also : "";
   if (best.group.size() > 1)
-    return "one of " + join_words(best.group) + " is missing, and these data cannot say which: best fits " + with_values(best) + also;
-  return (still ? "still missing: " : "missing: ") + with_values(best) + also;
+    return "one of " + join_words(best.group) + " is missing, and these data cannot say which: best fits " + with_values(best);
+  return (still ? "still missing: " : "missing: ") + with_values(best);
 }
 
 std::string hold_in_words(const Candidate& best) {
@@ -30,8 +29,7 @@ std::string hold_in_words(const Candidate& best) {
   for (const auto& [input, hold] : *best.holds) inputs.push_back(input);
   const bool one = inputs.size() == 1, held = best.holds->begin()->second == "zero_order";
   return fmt::format(
-      "between {} samples {} {} {}, where the model takes {} as {}: half a sampling interval is what {} needs to make up for that; the "
-      "right hold comes first, since what is found beside a wrong one may stand for it",
+      "between {} samples {} {} {}, where the model takes {} as {}: half a sampling interval is what {} needs to make up for that",
       one ? "its" : "their", join_words(inputs), one ? "is rather" : "are rather", held ? "constant" : "straight", one ? "it" : "them",
       held ? "a straight line" : "constant", with_values(best));
 }

@@ -128,17 +128,10 @@ std::vector<std::string> added_in_clauses(const AddedWork& work) {
   return out;
 }
 
-std::vector<std::string> doubts_in_clauses(const Ladder& ladder, const std::vector<std::string>& doubts) {
-  constexpr std::size_t most = 2;
-  std::vector<std::string> out;
-  if (!doubts.empty()) {
-    const std::vector<std::string> first(doubts.begin(), doubts.begin() + std::min(most, doubts.size()));
-    out.push_back("in the last model " + join_words(first) + ", so that what was added may stand for something else");
-  }
-  if (const Rung* first = begun_with(ladder))
-    out.push_back(added_in_words(*first) +
-                  " was begun with though by itself it left a lack of fit, so that it may stand for something else");
-  return out;
+std::string begun_in_words(const Ladder& ladder) {
+  const Rung* first = begun_with(ladder);
+  if (first == nullptr) return "";
+  return added_in_words(*first) + " was begun with though by itself it left a lack of fit, so that it may stand for something else";
 }
 
 }  // namespace misfit

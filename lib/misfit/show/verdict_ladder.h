@@ -27,7 +27,7 @@ struct AddedWork {
 /// more than 3 % and none falls, it "was added".
 [[nodiscard]] std::vector<std::string> added_in_clauses(const AddedWork& work);
 
-/// "in the last model tau ends at its bound, 0.01 s, so that …", "a was begun with though …": why that may not be what its name says.
-[[nodiscard]] std::vector<std::string> doubts_in_clauses(const Ladder& ladder, const std::vector<std::string>& doubts);
+/// "a was begun with though …": of several rungs, one that no test accepted by itself; empty: there is none.
+[[nodiscard]] std::string begun_in_words(const Ladder& ladder);
 
 }  // namespace misfit
