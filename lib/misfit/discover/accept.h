@@ -18,9 +18,6 @@ struct SearchContext {
   double families = 1.0;  ///< that a p-value is corrected for
 };
 
-/// A refit has failed if its drop is below this share of the chi² that its score promised.
-inline constexpr double least_of_score = 0.5;
-
 /// The acceptance rule of discovery: at most one of the refitted candidates, which stand in front, best first. Its steps, with their
 /// numbers and formulas in lib/misfit/README.md, 6.5:
 ///   4. Refusals: `judge` notes the first reason against each.

@@ -278,46 +278,99 @@ Refit unfinished(const ScreeningResult& screening, const std::string& spent, std
   return out;
 }
 
-Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from) {
-  const Watch watch("the refit of " + screening.candidate_model->effect, work.time_limit);
-  const FilterEstimate& without = work.without;
-  Refit out;
-  out.request = screening.candidate_model->request;
-  const auto estimate_from_all = [&](const std::vector<FilterStart>& starts, const std::optional<FilterNoise>& noise) {
-    if (watch.spent()) return;
-    FilterOptions options = options_like(without, work.threads);
+namespace {
+
+/// The searches of a refit, from one start after the other until one ends at a maximum.
+class RefitSearch {
+ public:
+  RefitSearch(const RefitWork& work, const ScreeningResult& screening, const Watch& watch)
+      : work_(work), screening_(screening), watch_(watch) {
+    out_.request = screening.candidate_model->request;
+  }
+
+  Refit run(const OneStep& from) {
+    const FilterEstimate& without = work_.without;
+    if (const auto in_steps = in_whole_steps(start(), work_, screening_)) {
+      if (!work_.afresh) estimate_from(*in_steps, without.noise);
+      // Without the steps the estimate may be far off, with a random force that makes up for them.
+      if (const auto fresh = in_whole_steps(fresh_model(work_, screening_), work_, screening_)) estimate_from(*fresh, std::nullopt);
+      return std::move(out_);
+    }
+    if (work_.afresh) {
+      estimate_from(fresh_model(work_, screening_), std::nullopt);
+    } else {
+      if (work_.rest != nullptr) estimate_from_the_rest();
+      if (no_maximum() && from.model) estimate_from(*from.model, from.noise);
+      if (no_maximum()) estimate_from(start(), without.noise);
+      const double off = without.objective + prior_of_off(*screening_.candidate_model);
+      if (no_maximum() || out_.estimate.objective < off) estimate_from(off_model(work_, screening_), without.noise);
+    }
+    if (fell_short()) estimate_from_held_shapes();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] Model start() const { return start_model(work_.without, screening_, work_.registry); }
+  [[nodiscard]] bool no_maximum() const { return !out_.ok || !out_.estimate.converged; }
+
+  void estimate_from_all(const std::vector<FilterStart>& starts, const std::optional<FilterNoise>& noise) {
+    if (watch_.spent()) return;
+    FilterOptions options = options_like(work_.without, work_.threads);
     options.noise = noise;
     try {
-      FilterEstimate there = estimate_filter(starts, work.experiments, options);
-      if (!out.ok || better(there, out.estimate)) out.estimate = std::move(there);
-      out.ok = true;
+      FilterEstimate there = estimate_filter(starts, work_.experiments, options);
+      if (!out_.ok || better(there, out_.estimate)) out_.estimate = std::move(there);
+      out_.ok = true;
     } catch (const RunError& error) {
-      out.why = error.what();
-    } catch (const TimeLimitReached&) {  // said below
+      out_.why = error.what();
+    } catch (const TimeLimitReached&) {  // said by who asked
     }
-  };
-  const auto estimate_from = [&](const Model& start, const std::optional<FilterNoise>& noise) {
-    estimate_from_all({{start, penalties_as_of(without, start)}}, noise);
-  };
-  const auto no_maximum = [&] { return !out.ok || !out.estimate.converged; };
-  if (const auto in_steps = in_whole_steps(start_model(without, screening, work.registry), work, screening)) {
-    if (!work.afresh) estimate_from(*in_steps, without.noise);
-    // Without the steps the estimate may be far off, with a random force that makes up for them.
-    if (const auto fresh = in_whole_steps(fresh_model(work, screening), work, screening)) estimate_from(*fresh, std::nullopt);
-  } else if (work.afresh) {
-    estimate_from(fresh_model(work, screening), std::nullopt);
-  } else {
-    if (work.rest != nullptr) {
-      const Model start = start_model(*work.rest, screening, work.registry);
-      const std::vector<Penalty> penalties = penalties_as_of(without, start);
-      estimate_from_all({{start, penalties}, {start, penalties, std::nullopt, true}}, work.rest->noise);
-    }
-    if (no_maximum() && from.model) estimate_from(*from.model, from.noise);
-    if (no_maximum()) estimate_from(start_model(without, screening, work.registry), without.noise);
-    const double off = without.objective + prior_of_off(*screening.candidate_model);
-    if (no_maximum() || out.estimate.objective < off) estimate_from(off_model(work, screening), without.noise);
   }
-  const bool in_time = !no_maximum() || !watch.spent();
+  void estimate_from(const Model& start, const std::optional<FilterNoise>& noise) {
+    estimate_from_all({{start, penalties_as_of(work_.without, start)}}, noise);
+  }
+  void estimate_from_the_rest() {
+    const Model start = start_model(*work_.rest, screening_, work_.registry);
+    const std::vector<Penalty> penalties = penalties_as_of(work_.without, start);
+    estimate_from_all({{start, penalties}, {start, penalties, std::nullopt, true}}, work_.rest->noise);
+  }
+
+  /// Of what its score promises. Where it was screened beside another estimate, that is no measure.
+  [[nodiscard]] bool fell_short() const {
+    if (work_.screened != nullptr || watch_.spent()) return false;
+    return !out_.ok || drop_of(out_.estimate, work_.without, screening_) < least_of_score * screening_.result.chi2;
+  }
+  /// With its shapes as screened an effect is nearly linear, and its maximum near what its score promises; from there they are set free.
+  void estimate_from_held_shapes() {
+    Model held = work_.afresh ? fresh_model(work_, screening_) : start();
+    std::vector<int> shapes = screening_.candidate_model->shapes;
+    std::erase_if(shapes, [&](int shape) { return !held.parameters[shape].free; });
+    if (shapes.empty()) return;
+    for (const int shape : shapes) held.parameters[shape].free = false;
+    FilterOptions options = options_like(work_.without, work_.threads);
+    options.verify = false;
+    try {
+      const FilterEstimate there = estimate_filter(held, penalties_as_of(work_.without, held), work_.experiments, options);
+      Model freed = there.model;
+      for (const int shape : shapes) freed.parameters[shape].free = true;
+      estimate_from(freed, there.noise);
+    } catch (const RunError&) {  // what was found stays
+    } catch (const TimeLimitReached&) {
+    }
+  }
+
+  const RefitWork& work_;
+  const ScreeningResult& screening_;
+  const Watch& watch_;
+  Refit out_;
+};
+
+}  // namespace
+
+Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from) {
+  const Watch watch("the refit of " + screening.candidate_model->effect, work.time_limit);
+  Refit out = RefitSearch(work, screening, watch).run(from);
+  const bool in_time = (out.ok && out.estimate.converged) || !watch.spent();
   if (!out.ok) return in_time ? out : unfinished(screening, watch.words());
   if (in_time) narrow_smoothings(work, out);
   if (in_time) shorten_numerical_times(work, out);
@@ -325,7 +378,7 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   if (whole_tried) try_exchanged_poles(work, out);
   note_half_a_sample(out);
   note_output_as_late(out);
-  if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, without, screening));
+  if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, work.without, screening));
   return with_what_is_said(work, screening, std::move(out));
 }
 

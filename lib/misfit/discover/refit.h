@@ -24,6 +24,9 @@ struct Refit {
   std::string also;  ///< another explanation that these data hardly tell from this one, in words; empty: none found
 };
 
+/// A refit has failed if its drop is below this share of the chi² that its score promised.
+inline constexpr double least_of_score = 0.5;
+
 /// What refits have in common.
 struct RefitWork {
   const FilterEstimate& without;
@@ -87,11 +90,12 @@ struct OneStep {
 /// Begun afresh (RefitWork), from there alone; from another estimate, from there first. Else `from`: where to start, if it ended anywhere.
 /// Where no maximum is reached from there, and without it: from the estimate with the effect added to it, which an effect that the other
 /// parameters must make room for can throw out of the finite numbers; where that, too, reaches none, or one below the estimate: from the
-/// estimate with the effect in it but off, below which the search does not end. A width that ends at what the filter resolved goes on down
-/// to what it resolves now (refit_sizes.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if that
-/// costs the log-likelihood little (fix_whole_strengths()): from what was found and from the best of the shapes that the screening looked
-/// at, the higher of the two. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried. Last, a
-/// shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
+/// estimate with the effect in it but off, below which the search does not end. Where what was found falls short of what the score promises
+/// (least_of_score): with the shapes held as screened first, which are then set free. A width that ends at what the filter resolved goes on
+/// down to what it resolves now (refit_sizes.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if
+/// that costs the log-likelihood little (fix_whole_strengths()): from what was found and from the best of the shapes that the screening
+/// looked at, the higher of the two. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried.
+/// Last, a shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.
