@@ -114,19 +114,14 @@ enum class Held { taken, refused, out_of_time };
 /// Searches for the maximum with the whole effect in place of what was found.
 class WholeSearch {
  public:
-  /// A memory begins where a search has it with the values that it starts from (own_states_along()). The whole effect begins with those of
-  /// the part, nearly, and that is how the part is compared with it: a beginning of other values may be worth more than any share.
-  WholeSearch(const RefitWork& work, Refit& out) : work_(work), out_(out), to_compare_(out.estimate.objective) {
-    if (const auto begun_anew = run_once(work, out.estimate.model, out.estimate.noise))
-      to_compare_ = std::min(to_compare_, begun_anew->objective);
-  }
+  WholeSearch(const RefitWork& work, Refit& out) : work_(work), out_(out) {}
 
   /// From a start; taken if its log-likelihood is not lower by `allowed`. A first search is not verified, which is most of the work:
   /// where it ends far lower, or where the search before this one ended, there is nothing to look for more closely. One that has not
   /// converged may still rise, but hardly from below the model without the effect to a whole one that matters.
   Held take_if_allowed(const WholeStart& start, const FilterNoise& noise, double allowed) {
     try {
-      const double least = to_compare_ - allowed;
+      const double least = out_.estimate.objective - allowed;
       const FilterEstimate nearly = estimate(start.model, noise, {});
       if (nearly.out_of_time) return Held::out_of_time;
       if (is_far_below(nearly, least) && (nearly.converged || is_no_better_than_without(nearly))) return Held::refused;
@@ -136,7 +131,6 @@ class WholeSearch {
       if (held.out_of_time) return Held::out_of_time;
       if (!held.converged || !(held.objective > least)) return Held::refused;
       out_.estimate = std::move(held);
-      to_compare_ = out_.estimate.objective;
       out_.request = start.request;
       out_.moved = start.moved;
       return Held::taken;
@@ -169,7 +163,6 @@ class WholeSearch {
 
   const RefitWork& work_;
   Refit& out_;
-  double to_compare_;           ///< [log-likelihood] of what was found
   std::optional<double> last_;  ///< [log-likelihood] where the search before ended, before it was verified
 };
 

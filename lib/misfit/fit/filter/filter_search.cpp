@@ -33,6 +33,7 @@ void FilterSearch::finish() {
   if (!options_.noise && !out_.reference.time_is_given) survey_noise();
   if (!options_.noise && options_.verify) weigh_outputs_otherwise(at_, {all_rounds, tolerance(), options_.threads});
   if (!options_.use) reject_outliers();
+  begin_memories_anew();
   if (options_.verify) refine_jointly();
   return_to_floor();
   if (options_.verify && !options_.plans) integrate_well();
@@ -117,7 +118,10 @@ void FilterSearch::set_floor() {
 
 void FilterSearch::return_to_floor() {
   constexpr int most_steps = 5;
-  if (!floor_ || at_.objective >= floor_->objective || !at_.move_to(floor_->theta, floor_->logs)) return;
+  if (!floor_ || at_.objective >= floor_->objective) return;
+  at_.theta = floor_->theta;
+  at_.begin_memories_anew();
+  if (!at_.move_to(floor_->theta, floor_->logs)) return;
   const Eigen::MatrixXd information = out_.noise_fit.information;
   out_.noise_fit = fit_noise(at_.runs(), out_.noise, {out_.reference, options_.threads, 0});
   out_.noise_fit.information = information;
@@ -182,6 +186,23 @@ void FilterSearch::reject_outliers() {
     iterate_again();
   }
   if (kept) out_.notes.push_back(in_words(*kept, out_.model.system->spec()));
+}
+
+void FilterSearch::begin_memories_anew() {
+  constexpr int most = 3;
+  constexpr double little = 0.1;  // [log-likelihood]
+  for (int k = 0; k < most; ++k) {
+    const std::vector<FilterData> before = out_.data;
+    const double objective = at_.objective;
+    if (!at_.begin_memories_anew()) return;
+    if (!at_.linearise()) {
+      out_.data = before;
+      at_.linearise();
+      return;
+    }
+    if (std::abs(at_.objective - objective) < little) return;
+    at_.iterate(15, tolerance());
+  }
 }
 
 void FilterSearch::iterate_again() {

@@ -96,6 +96,10 @@ class FilterSearch {
   /// which good measurements may have been rejected too. Those at the jumps of an input are kept.
   void reject_outliers();
 
+  /// Memories begin where the values that the search starts from say that they are: where those that it has come to say something else,
+  /// it goes on with that.
+  void begin_memories_anew();
+
   /// After a change of which measurements count.
   void iterate_again();
 

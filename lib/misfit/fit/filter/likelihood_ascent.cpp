@@ -126,6 +126,14 @@ bool LikelihoodAscent::plan(double tolerance) {
   return another;
 }
 
+bool LikelihoodAscent::begin_memories_anew() {
+  if (out.model.own_states.empty()) return false;
+  const std::vector<double> now = values();
+  for (std::size_t i = 0; i < now.size(); ++i) out.forced.model.parameters[i].value = now[i];
+  for (FilterData& data : out.data) data = filter_data_like(out.forced, data);
+  return true;
+}
+
 double LikelihoodAscent::integration_shift() const {
   FilterRunner runner(out.forced, false);
   runner.set_parameters(values());
