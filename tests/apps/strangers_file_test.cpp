@@ -112,8 +112,8 @@ TEST(StrangersFile, OfAHouseWhoseWallsARandomForceFollowsItNamesWhatTheyStore) {
   EXPECT_THAT(v.sentence, testing::StartsWith("lag was missing"));
 }
 
-/// Where the limited input begins is taken from what a search starts with: by that alone a share of 1.0005 came 12 higher than the whole, so
-/// that "only a part of it" was found. The truth is 1.3768 rad/s. Simulated by the bench of strangers (servo, seed 550).
+/// Where the limited input begins was taken from what a search starts with: by that alone a share of 1.0005 came 12 higher than the whole,
+/// so that "only a part of it" was found. The truth is 1.3768 rad/s. Simulated by the bench of strangers (servo, seed 550).
 TEST(StrangersFile, OfAServoThatMovesNoFasterItNamesTheRateLimit) {
   const Verdict v = verdict_on("servo", content(paths::source() / "tests/apps/records/servo_with_a_slew_limit.csv"));
   EXPECT_THAT(v.sentence, testing::StartsWith("rate_limit (input = u, port = u) was missing"));
