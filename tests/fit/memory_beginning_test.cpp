@@ -42,22 +42,19 @@ Signals servo() {
   return s;
 }
 
-FilterEstimate estimate_from(double rate_limit, double follow_time) {
+FilterEstimate estimate_from(double rate_limit) {
   static const std::vector<Signals> signals{servo()};
   static const std::shared_ptr<Registry> systems = registry_with(servo_text);
-  ModelRequest request = request_of("text");
-  EffectRequest limit = effect("rate_limit");
-  limit.roles = {{"input", "u"}, {"port", "u"}};
-  request.effects.push_back(limit);
+  ModelRequest request = request_of("text", {effect("rate_limit", {{"input", "u"}, {"port", "u"}})});
   request.parameters["limited_gain"].value = 1.0;
   request.parameters["limited_gain"].free = false;
   request.parameters["rate_limit"].value = rate_limit;
-  request.parameters["follow_time"].value = follow_time;
+  request.parameters["follow_time"].value = 0.015;
   return estimate_filter(assemble(request, *systems), {}, signals);
 }
 
 TEST(TheMemoryOfAnEffect, BeginsWhereTheEstimateSaysWhereverTheSearchBegan) {
-  const FilterEstimate near = estimate_from(1.37, 0.015), far = estimate_from(2.5, 0.015);
+  const FilterEstimate near = estimate_from(1.37), far = estimate_from(2.5);
   const auto limit = [](const FilterEstimate& e) {
     for (const Parameter& p : e.model.parameters) {
       if (p.name == "rate_limit") return p.value;

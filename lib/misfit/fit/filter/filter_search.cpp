@@ -119,9 +119,13 @@ void FilterSearch::set_floor() {
 void FilterSearch::return_to_floor() {
   constexpr int most_steps = 5;
   if (!floor_ || at_.objective >= floor_->objective) return;
-  at_.theta = floor_->theta;
-  at_.begin_memories_anew();
-  if (!at_.move_to(floor_->theta, floor_->logs)) return;
+  const std::vector<FilterData> before = out_.data;
+  at_.begin_memories(floor_->theta);
+  if (!at_.move_to(floor_->theta, floor_->logs)) {
+    out_.data = before;
+    at_.linearise();
+    return;
+  }
   const Eigen::MatrixXd information = out_.noise_fit.information;
   out_.noise_fit = fit_noise(at_.runs(), out_.noise, {out_.reference, options_.threads, 0});
   out_.noise_fit.information = information;
@@ -191,10 +195,11 @@ void FilterSearch::reject_outliers() {
 void FilterSearch::begin_memories_anew() {
   constexpr int most = 3;
   constexpr double little = 0.1;  // [log-likelihood]
+  if (out_.model.own_states.empty()) return;
   for (int k = 0; k < most; ++k) {
     const std::vector<FilterData> before = out_.data;
     const double objective = at_.objective;
-    if (!at_.begin_memories_anew()) return;
+    at_.begin_memories(at_.theta);
     if (!at_.linearise()) {
       out_.data = before;
       at_.linearise();

@@ -126,12 +126,11 @@ bool LikelihoodAscent::plan(double tolerance) {
   return another;
 }
 
-bool LikelihoodAscent::begin_memories_anew() {
-  if (out.model.own_states.empty()) return false;
-  const std::vector<double> now = values();
-  for (std::size_t i = 0; i < now.size(); ++i) out.forced.model.parameters[i].value = now[i];
-  for (FilterData& data : out.data) data = filter_data_like(out.forced, data);
-  return true;
+void LikelihoodAscent::begin_memories(const Eigen::VectorXd& theta_of_memories) {
+  if (out.model.own_states.empty()) return;
+  FilterModel there = out.forced;
+  there.model.set_theta(theta_of_memories);
+  for (FilterData& data : out.data) data = filter_data_like(there, data);
 }
 
 double LikelihoodAscent::integration_shift() const {

@@ -38,8 +38,8 @@ class LikelihoodAscent {
   void plan_along_measurements(double tolerance);
   /// Plans the integration along the filtered states. True if it is another one than before: then linearise() is due.
   bool plan(double tolerance);
-  /// Memories of effects begin where the present values say that they are (own_states_along()). False: there are none.
-  bool begin_memories_anew();
+  /// Memories of effects begin where these parameters say that they are (own_states_along()); nothing is run.
+  void begin_memories(const Eigen::VectorXd& theta_of_memories);
   /// How far the free parameters would move if every part of the plan were halved [sigma], the largest; 0 where it cannot be run so.
   [[nodiscard]] double integration_shift() const;
   /// False if the model cannot be run with it, or has no density with it (a fit of the noise that failed): all is as before.
