@@ -1,6 +1,6 @@
-# misfit_layer(NAME [APART] LINKS layers and packages… [PRIVATE packages…]): one folder of lib/misfit = one static library misfit_NAME; a folder
+# misfit_layer(NAME [APART files…] LINKS layers and packages… [PRIVATE packages…]): one folder of lib/misfit = one static library misfit_NAME; a folder
 # inside a folder is a layer of its own: NAME = fit/filter, library misfit_fit_filter.
-# APART: its files are never compiled together (misfit_join_files), since they use the same names for parts that do the same.
+# APART: these of its files are never compiled together with others (misfit_join_files), since they use the same names for parts that do the same.
 # A folder of headers alone becomes an interface library, whose PRIVATE packages are left out.
 add_library(misfit_options INTERFACE)
 add_library(misfit::options ALIAS misfit_options)
@@ -32,15 +32,15 @@ function(misfit_use_pch target)
   endif()
 endfunction()
 
-# Lets g++ read the headers of eight files of this target at once, if that is on: half of the time of a first build goes into templates
+# Lets g++ read the headers of sixteen files of this target at once, if that is on: half of the time of a first build goes into templates
 # that every file instantiates anew. So names in anonymous namespaces are to be unique within a layer.
 function(misfit_join_files target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${MISFIT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${MISFIT_UNITY} UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
 
 set(MISFIT_LAYERS "" CACHE INTERNAL "")
 function(misfit_layer folder)
-  cmake_parse_arguments(arg "APART" "" "LINKS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "APART;LINKS;PRIVATE" ${ARGN})
   string(REPLACE / _ name ${folder})
   set(links misfit_options)
   foreach(item IN LISTS arg_LINKS)
@@ -58,9 +58,9 @@ function(misfit_layer folder)
     add_library(misfit_${name} STATIC ${sources})
     target_link_libraries(misfit_${name} PRIVATE ${arg_PRIVATE})
     misfit_use_pch(misfit_${name})
-    if(NOT arg_APART)
-      misfit_join_files(misfit_${name})
-    endif()
+    misfit_join_files(misfit_${name})
+    list(TRANSFORM arg_APART PREPEND ${PROJECT_SOURCE_DIR}/lib/misfit/${folder}/)
+    set_source_files_properties(${arg_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   else()
     set(scope INTERFACE)
     add_library(misfit_${name} INTERFACE)

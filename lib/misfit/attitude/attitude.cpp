@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -11,12 +10,11 @@
 #include "misfit/attitude/propagation.h"
 #include "misfit/attitude/stencil.h"
 #include "misfit/core/error.h"
+#include "misfit/core/missing.h"
 #include "misfit/core/text.h"
 
 namespace misfit {
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 void check_geometry(const RigGeometry& g) {
   for (const auto& [name, value] : {std::pair{"R", g.R}, std::pair{"V", g.V}, std::pair{"l_b", g.l_b}}) {
@@ -50,7 +48,7 @@ void note_losses(Attitude& a, const AxisSamples& axes, const std::vector<bool>& 
 // Measurement noise per sample: the track's where it knows it, else the estimate.
 std::vector<double> noise_per_sample(const Track& track, const std::vector<bool>& even, std::vector<std::string>& notes) {
   std::vector<double> sigma = track.sigma;
-  sigma.resize(track.t.size(), missing);
+  sigma.resize(track.t.size(), kMissing);
   if (std::all_of(sigma.begin(), sigma.end(), [](double s) { return std::isfinite(s); })) return sigma;
   const std::size_t unknown = std::count_if(sigma.begin(), sigma.end(), [](double s) { return !std::isfinite(s); });
   const auto estimate = pixel_noise(track, even);
@@ -58,7 +56,7 @@ std::vector<double> noise_per_sample(const Track& track, const std::vector<bool>
                   (estimate ? "measurement noise there is " + format_value(*estimate) + " px, estimated from sixth differences"
                             : "too few samples in a row to estimate it, so sigmas are missing there"));
   for (double& s : sigma) {
-    if (!std::isfinite(s)) s = estimate.value_or(missing);
+    if (!std::isfinite(s)) s = estimate.value_or(kMissing);
   }
   return sigma;
 }
@@ -67,7 +65,7 @@ Attitude from_axis_samples(const Track& track, const AxisSamples& axes, const st
   const std::size_t n = track.t.size();
   Attitude a;
   a.t = track.t;
-  for (auto* column : {&a.theta, &a.psi, &a.alpha, &a.beta, &a.alpha_T, &a.phi, &a.eta}) column->assign(n, missing);
+  for (auto* column : {&a.theta, &a.psi, &a.alpha, &a.beta, &a.alpha_T, &a.phi, &a.eta}) column->assign(n, kMissing);
   for (std::size_t i = 0; i < n; ++i) {
     const AxisSample& sample = axes.samples[i];
     if (!sample.ok) continue;
@@ -89,7 +87,7 @@ Attitude from_axis_samples(const Track& track, const AxisSamples& axes, const st
 }
 
 Attitude without_sigmas(Attitude a) {
-  for (auto* column : {&a.sigma_theta, &a.sigma_psi, &a.sigma_alpha_T, &a.sigma_phi}) column->assign(a.t.size(), missing);
+  for (auto* column : {&a.sigma_theta, &a.sigma_psi, &a.sigma_alpha_T, &a.sigma_phi}) column->assign(a.t.size(), kMissing);
   return a;
 }
 

@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "misfit/attitude/stencil.h"
+#include "misfit/core/missing.h"
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t reach = 3;  // alpha at sample i is made of samples i − reach … i + reach
 constexpr std::size_t window = 2 * reach + 1;
 
@@ -95,7 +94,7 @@ double clock_angle_sigma(const Attitude& a, const UncertaintySources& from, std:
 
 std::string add_sigmas(Attitude& a, const UncertaintySources& from, double lag) {
   constexpr double deg = std::numbers::pi / 180.0;
-  for (auto* column : {&a.sigma_theta, &a.sigma_psi, &a.sigma_alpha_T, &a.sigma_phi}) column->assign(a.t.size(), missing);
+  for (auto* column : {&a.sigma_theta, &a.sigma_psi, &a.sigma_alpha_T, &a.sigma_phi}) column->assign(a.t.size(), kMissing);
   std::vector<double> measurement, camera;
   for (std::size_t i = 0; i < a.t.size(); ++i) {
     if (!from.samples[i].ok) continue;

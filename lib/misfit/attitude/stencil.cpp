@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "misfit/core/missing.h"
 #include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 // Are all steps from sample `first` to sample `last` even?
 bool even_between(const std::vector<bool>& even, std::size_t first, std::size_t last) {
@@ -43,7 +41,7 @@ std::array<double, 5> derivative_weights(const std::vector<double>& t, std::size
 }
 
 std::vector<double> three_point_average(const std::vector<double>& f, const std::vector<bool>& even) {
-  std::vector<double> average(f.size(), missing);
+  std::vector<double> average(f.size(), kMissing);
   for (std::size_t i = 1; i + 1 < f.size(); ++i) {
     if (even_between(even, i - 1, i + 1)) average[i] = (f[i - 1] + f[i] + f[i + 1]) / 3.0;
   }
@@ -51,7 +49,7 @@ std::vector<double> three_point_average(const std::vector<double>& f, const std:
 }
 
 std::vector<double> five_point_derivative(const std::vector<double>& f, const std::vector<double>& t, const std::vector<bool>& even) {
-  std::vector<double> derivative(f.size(), missing);
+  std::vector<double> derivative(f.size(), kMissing);
   for (std::size_t i = 2; i + 2 < f.size(); ++i) {
     if (!even_between(even, i - 2, i + 2)) continue;
     const std::array<double, 5> w = derivative_weights(t, i);

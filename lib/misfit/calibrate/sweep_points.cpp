@@ -2,26 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <string>
 
 #include "misfit/core/error.h"
+#include "misfit/core/missing.h"
 #include "misfit/core/text.h"
 #include "misfit/core/units.h"
 
 namespace misfit {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
-double at(const std::vector<double>& column, std::size_t i) { return i < column.size() ? column[i] : missing; }
+double at(const std::vector<double>& column, std::size_t i) { return i < column.size() ? column[i] : kMissing; }
 
 // data/sweep.h: where point k of the rig is at `theta`.
 SweepPoint rig_point(int k, double theta, const RigGeometry& g) {
   const double c = std::cos(theta);
   const double s = std::sin(theta);
-  SweepPoint p{.point = k, .theta = theta, .P_y = missing, .P_z = missing};
+  SweepPoint p{.point = k, .theta = theta, .P_y = kMissing, .P_z = kMissing};
   p.x = g.l_p + (k == 1 ? g.R1 * c : k == 2 ? -g.R2 * c : g.R3 * c);
   p.z = k == 1 ? g.R1 * s : k == 2 ? g.R2 * s : -g.R3 * s;
   return p;

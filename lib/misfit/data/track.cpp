@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "misfit/core/error.h"
+#include "misfit/core/missing.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/table.h"
 #include "misfit/core/text.h"
@@ -14,7 +14,6 @@
 namespace misfit {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double farthest = 1e5;  // [px] beyond any image: a tracker's mark for "not found"
 
 void check_names(const ColumnMap& columns) {
@@ -56,8 +55,8 @@ class TrackBuilder {
     far_ += far ? 1 : 0;
     lost_ += ok ? 0 : 1;
     track_.t.push_back(t);
-    track_.P_y.push_back(ok ? raw.P_y[i] : missing);
-    track_.P_z.push_back(ok ? raw.P_z[i] : missing);
+    track_.P_y.push_back(ok ? raw.P_y[i] : kMissing);
+    track_.P_z.push_back(ok ? raw.P_z[i] : kMissing);
     track_.sigma.push_back(raw.sigma[i]);
     track_.ok.push_back(ok);
   }
@@ -109,7 +108,7 @@ Track read_track(const std::filesystem::path& path, const ColumnMap& columns) {
   std::vector<std::string> notes;
   const auto required = [&](const char* name, const char* unit) { return columns.values(table, name, unit, notes); };
   const auto optional = [&](const char* name, const char* unit) {
-    return absent(table, columns, name) ? std::vector<double>(table.rows(), missing) : required(name, unit);
+    return absent(table, columns, name) ? std::vector<double>(table.rows(), kMissing) : required(name, unit);
   };
   raw.t = required("t", "s");
   raw.P_y = required("P_y", "px");

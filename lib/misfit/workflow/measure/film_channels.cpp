@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "misfit/core/error.h"
+#include "misfit/core/missing.h"
 #include "misfit/core/shown.h"
 #include "misfit/math/homography.h"
 #include "misfit/math/statistics.h"
@@ -36,8 +36,6 @@ std::optional<double> metres_per_pixel(const VideoStudy& video) {
 }
 
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// From pixels to metres, right and upwards: the map of the plane, or one scale.
 std::optional<PlaneMap> metres_of(const TrackFacts& facts, const VideoStudy& video) {
@@ -75,12 +73,12 @@ Table film_table(const std::vector<FilmTrack>& tracks, const VideoStudy& video) 
     const std::optional<PlaneMap> metres = metres_of(followed.facts, video);
     std::array<std::vector<double>, 4> values;
     for (std::size_t k = 0; k < track.t.size(); ++k) {
-      const Eigen::Vector2d pixel = track.ok[k] ? pixel_of(followed, k) : Eigen::Vector2d(missing, missing);
+      const Eigen::Vector2d pixel = track.ok[k] ? pixel_of(followed, k) : Eigen::Vector2d(kMissing, kMissing);
       const std::optional<Eigen::Vector2d> place = metres && track.ok[k] ? metres->place(pixel) : std::nullopt;
       values[0].push_back(pixel.x());
       values[1].push_back(pixel.y());
-      values[2].push_back(place ? place->x() : missing);
-      values[3].push_back(place ? place->y() : missing);
+      values[2].push_back(place ? place->x() : kMissing);
+      values[3].push_back(place ? place->y() : kMissing);
     }
     const std::vector<std::string> channels = channels_of(followed);
     for (std::size_t i = 0; i < (metres ? 4 : 2); ++i) table.add(channels[i], i < 2 ? "px" : "m", values[i]);

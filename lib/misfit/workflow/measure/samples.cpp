@@ -1,16 +1,9 @@
 #include "misfit/workflow/measure/samples.h"
 
-#include <limits>
-
+#include "misfit/core/missing.h"
 #include "misfit/core/text.h"
 
 namespace misfit {
-namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 std::vector<double> sample_times(const std::vector<std::optional<double>>& read, const VideoFacts& facts, std::size_t fields,
                                  std::vector<std::string>& warnings) {
   std::vector<double> out;
@@ -37,9 +30,9 @@ Track track_of(const std::vector<TrackedSample>& samples, const VideoFacts& fact
     const TrackedSample& s = samples[k];
     const bool ok = s.loss == Loss::none;
     track.t.push_back(times[k]);
-    track.P_y.push_back(ok ? 0.5 * facts.width - s.at.column : missing);
-    track.P_z.push_back(ok ? s.at.row - 0.5 * facts.height : missing);
-    track.sigma.push_back(ok ? s.sigma : missing);
+    track.P_y.push_back(ok ? 0.5 * facts.width - s.at.column : kMissing);
+    track.P_z.push_back(ok ? s.at.row - 0.5 * facts.height : kMissing);
+    track.sigma.push_back(ok ? s.sigma : kMissing);
     track.ok.push_back(ok);
   }
   return track;

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "misfit/core/error.h"
 #include "misfit/core/files.h"
+#include "misfit/core/missing.h"
 #include "misfit/core/shown.h"
 #include "misfit/data/sweep.h"
 #include "misfit/jobs/interrupt.h"
@@ -22,8 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_markers = 8;  // per picture: the three points and things alike
 constexpr double max_drift = 3.0;       // [px] within which a marker stays while the rig stands
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
 /// A picture with the markers in it.
 struct MarkerDetections {
   Image image;
@@ -132,8 +130,8 @@ void make_sweep(const Session& session, const std::vector<SweepPicture>& picture
   std::vector<Shot> shots;
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (std::size_t p = 0; p < 3; ++p) {
-      sweep.P_y[p].push_back(points[k][p] ? 0.5 * detections[k].image.width - points[k][p]->column : missing);
-      sweep.P_z[p].push_back(points[k][p] ? points[k][p]->row - 0.5 * detections[k].image.height : missing);
+      sweep.P_y[p].push_back(points[k][p] ? 0.5 * detections[k].image.width - points[k][p]->column : kMissing);
+      sweep.P_z[p].push_back(points[k][p] ? points[k][p]->row - 0.5 * detections[k].image.height : kMissing);
     }
     shots.push_back(shot_of(pictures[k], std::move(detections[k]), points[k]));
   }
