@@ -539,10 +539,12 @@ TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
   c.discovery = searched({lag}, SearchOutcome::best_rejected, "No effect accepted; " + best_rejected(lag) + ".");
   const Verdict v = c.verdict();
   EXPECT_EQ(v.kind, VerdictKind::not_decided);
-  EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("coulomb_friction was missing"), HasSubstr("(-85 %); whether more is missing "),
-                                EndsWith("is not decided.")));
+  EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("coulomb_friction was missing"),
+                                EndsWith("(-85 %); something is still missing, and no effect of the library is accepted.")));
   EXPECT_THAT(v.notes, ElementsAre("Best candidate lag (drop 50, family-wise p = 1e-09), rejected: its size is odd.",
                                    testing::StartsWith("lag can be added by hand")));
+  c.discovery->candidates.front().p_value = 0.002;
+  EXPECT_THAT(c.verdict().sentence, EndsWith("(-85 %); whether more is missing is not decided."));
   c.discovery->candidates.front().why = "the held-out log-likelihood does not rise";
   EXPECT_EQ(c.verdict().next, "misfit open configs/motor") << "there is always something next";
 }

@@ -121,6 +121,11 @@ std::string best_rejected(const Candidate& candidate) {
          p_equals(candidate.p_value) + "), rejected: " + candidate.why;
 }
 
+bool shows_that_something_is_missing(const Candidate& rejected) {
+  constexpr double certain = 1e-4;
+  return rejected.p_value < certain;
+}
+
 namespace {
 
 bool is_tested_curve(const Candidate& c) { return c.family == CandidateFamily::unknown && !c.absorbed; }

@@ -83,6 +83,9 @@ struct NotTried {
 
 /// "best candidate lag (drop 50, family-wise p = 1e-9), rejected: its strength is not determined".
 [[nodiscard]] std::string best_rejected(const Candidate& candidate);
+/// What is refused by another condition than its significance: is something missing all the same? Below a family-wise p of 1e-4, which
+/// of models that lack nothing one in ten thousand has.
+[[nodiscard]] bool shows_that_something_is_missing(const Candidate& rejected);
 
 /// What a search for missing effects ends with.
 enum class SearchOutcome {

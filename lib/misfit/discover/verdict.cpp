@@ -182,7 +182,9 @@ void write_verdict(Discovery& out, const std::optional<Unexplained>& unexplained
   }
   if (best.actual_drop && best.p_value < p_accept) {
     out.outcome = SearchOutcome::best_rejected;
-    out.verdict = "No effect accepted; " + best_rejected(best) + ".";
+    out.verdict = (shows_that_something_is_missing(best) ? "Something is missing, and no effect of the library is accepted; "
+                                                         : "No effect accepted; ") +
+                  best_rejected(best) + ".";
     return;
   }
   say_none_missing(p_accept, out);

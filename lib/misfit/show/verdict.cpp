@@ -358,7 +358,9 @@ class VerdictBuilder {
       missing_of_unknown_form(d);
     } else if (effects_added_ && d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
-      added("whether more is missing is not decided", add_by_hand(best), VerdictKind::not_decided);
+      added(shows_that_something_is_missing(best) ? "something is still missing, and no effect of the library is accepted"
+                                                  : "whether more is missing is not decided",
+            add_by_hand(best), VerdictKind::not_decided);
       note(best_rejected(best));
       note_of_effect(by_hand(best));
     } else if (d.outcome == SearchOutcome::best_rejected) {
