@@ -403,6 +403,27 @@ TEST(CandidateToBeginWith, IsNotChosenPastWhatExplainsMore) {
   EXPECT_EQ(candidate_to_begin_with(d), nullptr) << "more than twice as much";
 }
 
+TEST(CandidateToBeginWith, IsChosenPastTheCurveThatWasAddedInVain) {
+  Candidate curve, elsewhere;
+  curve.effect = "unknown:angle(w)";
+  elsewhere.effect = "unknown:dw/dt(w)";
+  curve.family = elsewhere.family = CandidateFamily::unknown;
+  curve.dof = elsewhere.dof = 24;
+  curve.score = 744.0;
+  elsewhere.score = 610.0;
+  Discovery d = of_unknown_form({imitation("coulomb_friction", 297.0, 191.0), curve, elsewhere});
+  d.unexplained_port = "angle";
+  d.unexplained_quantity = "w";
+  d.unexplained_error = true;
+  d.unexplained_effects = {{"unknown_error", {{"of", "w"}, {"output", "angle"}}}};
+  EXPECT_EQ(candidate_to_begin_with(d), nullptr);
+  const auto after = candidate_after_the_curve(d);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->effect, "coulomb_friction") << "562 of the other curve are less than twice 297";
+  d.candidates.back().score = 650.0;
+  EXPECT_FALSE(candidate_after_the_curve(d)) << "more than twice as much";
+}
+
 TEST(LadderFile, ReadsBackWhatWasWritten) {
   const TemporaryFolder folder;
   const Ladder ladder = example_ladder();

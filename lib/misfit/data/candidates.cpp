@@ -174,6 +174,15 @@ const Candidate* candidate_to_begin_with(const Discovery& discovery) {
   return best == nullptr || is_past_a_larger_one(*best, discovery) ? nullptr : best;
 }
 
+std::optional<Candidate> candidate_after_the_curve(const Discovery& discovery) {
+  Discovery others = discovery;
+  others.unexplained_effects.clear();
+  const std::string in_vain = "unknown:" + discovery.unexplained_port + "(" + discovery.unexplained_quantity + ")";
+  std::erase_if(others.candidates, [&](const Candidate& c) { return c.effect == in_vain; });
+  const Candidate* best = candidate_to_begin_with(others);
+  return best == nullptr ? std::nullopt : std::optional(*best);
+}
+
 const Candidate* candidate_short_ahead(const Discovery& discovery) {
   constexpr double most_growth = 2.0;
   const Candidate* best = nullptr;

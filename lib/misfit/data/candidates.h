@@ -136,6 +136,9 @@ struct Discovery {
 /// nullptr: there is none, a curve of unknown form explains more (more than twice as much, where none can be added in its place), or a
 /// refitted candidate that is refused more than twice as much.
 [[nodiscard]] const Candidate* candidate_to_begin_with(const Discovery& discovery);
+/// The same once the curve of unknown form has been added in vain: it explains nothing of what is held out, so that it stands in nobody's
+/// way, and the others as where none can be added.
+[[nodiscard]] std::optional<Candidate> candidate_after_the_curve(const Discovery& discovery);
 
 /// None is accepted, and one explains more of what is measured and of what is held out than any other, but predicts worse farther ahead by
 /// itself (`grows_ahead`, by no more than twice): what it lacks beside it may be missing, too. Dry friction that alone has to hold what a

@@ -95,7 +95,8 @@ class Extension {
         ladder_.gained_too_little(effect_at(next->effect, next->roles), why_off_);
         break;
       }
-      if (!next && !begin_with_one(discovery) && !begin_with_two(discovery) && !add_curve(discovery)) break;
+      if (!next && !begin_with_one(discovery) && !begin_with_two(discovery) && !add_curve(discovery) && !begin_after_the_curve(discovery))
+        break;
       while (one_leaves() || one_is_exchanged() || one_is_sharper() || one_is_named()) {
       }
     }
@@ -193,6 +194,13 @@ class Extension {
       take_off_last();
     }
     return false;
+  }
+
+  /// A curve of unknown form was added in vain: begin_with_one() without it. False: none was tried, or that does not do.
+  bool begin_after_the_curve(const Discovery& discovery) {
+    if (discovery.unexplained_effects.empty() || lacks_pulses_only(ladder_.last())) return false;
+    const std::optional<Candidate> candidate = candidate_after_the_curve(discovery);
+    return candidate && !has_left(*candidate) && add_tentatively(*candidate, alternatives_to(*candidate, discovery));
   }
 
   void take_off_last() {
