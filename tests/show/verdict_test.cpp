@@ -45,6 +45,7 @@ Candidate candidate(const std::string& effect, double p, bool accepted) {
 struct Case {
   std::vector<Fit> fits{filter_fit()};
   std::optional<Calibration> calibration;
+  std::optional<Comparison> comparison;
   std::optional<Diagnosis> diagnosis, rung_diagnosis;
   std::optional<Discovery> discovery;
   std::optional<Ladder> ladder;
@@ -52,6 +53,7 @@ struct Case {
   [[nodiscard]] Verdict verdict() const {
     VerdictInput input{"configs/motor", "", &fits};
     if (calibration) input.calibration = &*calibration;
+    if (comparison) input.comparison = &*comparison;
     if (diagnosis) input.diagnosis = &*diagnosis;
     if (rung_diagnosis) input.rung_diagnosis = &*rung_diagnosis;
     if (discovery) input.discovery = &*discovery;
@@ -121,6 +123,45 @@ TEST(Verdict, WhereNothingIsMissingTheFittedModelIsTheAnswer) {
   EXPECT_THAT(c.verdict().parameters, HasSubstr("gain = "));
   c.discovery = searched({candidate("drag", 1e-9, true)}, SearchOutcome::accepted, "Missing: drag");
   EXPECT_THAT(c.verdict().parameters, IsEmpty()) << "drag changes them";
+}
+
+TEST(Verdict, OfDataThatDetermineNothingItDoesNotSayThatNothingIsMissing) {
+  Case c;
+  c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
+  Fit& fit = c.fits.front();
+  fit.parameters = {{"gain", {2.0, 0.0, "1/s"}}, {"tau", {0.5, 0.0, "s"}}};
+  EXPECT_EQ(c.verdict().kind, VerdictKind::not_decided);
+  EXPECT_THAT(c.verdict().sentence, AllOf(HasSubstr("cannot be said"), HasSubstr("too few"), Not(HasSubstr("No effect is found missing"))));
+  fit.parameters.at("tau").sigma = 0.1;
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("No effect is found missing"));
+  fit.predictions.resize(1);
+  fit.predictions.front().nrmse = 1.1;
+  EXPECT_EQ(c.verdict().kind, VerdictKind::not_decided);
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("no better than its mean"));
+  fit.predictions.front().nrmse = 0.2;
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("No effect is found missing"));
+}
+
+TEST(Verdict, NothingMissingIsDoubtedWhereTheSimulatedMotionIsAnother) {
+  Case c;
+  c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "No missing effect detected: none of 1 candidates");
+  c.comparison.emplace().motion.emplace().p_value = 0.2;
+  EXPECT_THAT(c.verdict().notes, IsEmpty());
+  c.comparison->motion->p_value = 0.005;
+  EXPECT_THAT(c.verdict().notes, ElementsAre(AllOf(HasSubstr("statistics of the measured motion"), HasSubstr("0.005"))));
+}
+
+TEST(Verdict, WhatCouldNotBeToldFromAnEffectWhenItWasAddedIsSaidWithItsValues) {
+  Case c;
+  c.add_effect();
+  Candidate from = candidate("coulomb_friction", 1e-9, true);
+  from.group = {"coulomb_friction", "stribeck_friction"};
+  describe_added(from, c.ladder->rungs.back());
+  EXPECT_THAT(c.verdict().added.front(), EndsWith("; when it was added these data could not tell it from stribeck_friction"));
+  from.group.clear();
+  Rung alone;
+  describe_added(from, alone);
+  EXPECT_FALSE(alone.alike);
 }
 
 TEST(Verdict, OfManyParametersTheFirstAreNamedAndTheRestCounted) {

@@ -10,10 +10,10 @@ namespace misfit {
 namespace {
 
 /// The study of a rung with `found` on a flight with gravity, a static moment and a pitch damping.
-std::string rung_with(const Candidate& found) {
+std::string rung_with(const Candidate& found, const std::string& effects = "") {
   const TemporaryFolder folder;
   folder.write("d.csv", "t[s],P_y[px],P_z[px]\n0,100,200\n0.02,101,201\n0.04,102,202\n0.06,103,203\n0.08,104,204\n");
-  folder.write("study.toml", R"toml([study]
+  folder.write("study.toml", std::string(R"toml([study]
 name = "flight"
 question = "What is missing?"
 methods = ["filter_error"]
@@ -40,7 +40,7 @@ data = "d.csv"
 gravity = {}
 static_moment = {}
 pitch_damping = {}
-)toml");
+)toml") + effects);
   Registry registry;
   misfit_models_register(registry);
   const Session session({.study = (folder.path() / "study.toml").string(), .out = (folder.path() / "out").string()}, registry);
@@ -67,6 +67,16 @@ TEST(RungStudy, KnotsThatDiscoveryFoundAreInTheUnitThatIsShown) {
       << "180/pi times as much, to a hundredth of 0.05 rad";
   found.knots = {};
   EXPECT_THAT(rung_with(found), testing::Not(testing::HasSubstr("knots")));
+}
+
+/// A coefficient of two effects has the names of both in front.
+TEST(RungStudy, KnotsOfASecondCurveOfUnknownFormAreThoseOfItsOwn) {
+  Candidate found;
+  found.effect = "unknown_force";
+  found.roles = {{"of", "alpha_T"}, {"port", "lateral_moment"}};
+  found.knots = {0.1, 0.2, 0.25};
+  EXPECT_THAT(rung_with(found, "unknown_force = { of = \"eta\", port = \"pitching_moment\" }\n"),
+              testing::HasSubstr("\"unknown_force_2.unknown_force\".knots = [5.73, 11.46, 14.32]\n"));
 }
 
 }  // namespace

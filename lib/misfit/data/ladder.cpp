@@ -36,12 +36,22 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
   json.if_there("validation_k_step", r.validation_k_step), json.if_there("gain_of_search", r.gain_of_search);
   json.if_there("remained", r.remained), json.if_there("why_too_little", r.why_too_little);
   json.if_there("free_rms", r.free_rms), json.if_there("validation_free_rms", r.validation_free_rms);
-  json.if_there("doubts", r.doubts), json.if_there("kept", r.kept);
+  json.if_there("doubts", r.doubts), json.if_there("kept", r.kept), json.if_there("alike", r.alike);
 }
 
 int parameters_added(const Rung& rung) { return rung.new_parameters.value_or(static_cast<int>(rung.parameters.size())); }
 
 bool is_seen_in_measurements(const Rung& rung) { return rung.kept && parameters_added(rung) == 0; }
+
+void describe_added(const Candidate& from, Rung& rung) {
+  rung.roles = from.roles;
+  rung.also = from.also;
+  rung.holds = from.holds;
+  rung.remained = from.remaining;
+  std::vector<std::string> alike = from.group;
+  std::erase(alike, effect_at(from.effect, from.roles));
+  if (!alike.empty() && alike.size() < from.group.size()) rung.alike = alike;
+}
 
 std::string added_in_words(const Rung& rung) { return effect_at(rung.added, rung.roles.value_or(std::map<std::string, std::string>{})); }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "misfit/data/candidates.h"
 #include "misfit/data/fit.h"
 
 namespace misfit {
@@ -41,7 +42,8 @@ struct Rung {
   std::optional<std::string> remained;                               ///< Candidate::remaining of what was added all the same
   std::optional<std::map<std::string, std::string>> holds;           ///< Candidate::holds of what was added
   std::optional<std::string> also;                                   ///< other values of what was added that explain hardly less, in words
-  std::string note;                                                  ///< in words
+  std::optional<std::vector<std::string>> alike;  ///< what these data could not tell from it when it was added, as effect_at() says it
+  std::string note;                               ///< in words
 };
 /// Steps of Rung::k_step.
 inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, 32};
@@ -56,6 +58,9 @@ struct Ladder {
 /// Nothing of what was added is estimated: it is seen in the measurements themselves (whole steps), so that what is held out does not speak
 /// against it.
 [[nodiscard]] bool is_seen_in_measurements(const Rung& rung);
+
+/// What discovery says of what is added.
+void describe_added(const Candidate& from, Rung& rung);
 
 /// What was added, in words: its key, and its place where that is not its default one.
 [[nodiscard]] std::string added_in_words(const Rung& rung);

@@ -13,6 +13,7 @@
 #include "misfit/discover/operating_range.h"
 #include "misfit/discover/size_reading.h"
 #include "misfit/discover/verdict.h"
+#include "misfit/fit/filter/slow_force.h"
 #include "misfit/fit/regression/lost_sign.h"
 #include "misfit/math/statistics.h"
 #include "misfit/model/whole_steps.h"
@@ -254,6 +255,14 @@ void RefitWaves::refit_what_promises_little() {
       forget_refit(e, "its refit explains less than a significant one");
   }
   sort_by_evidence(ranked_);
+}
+
+bool RefitWaves::refit_what_a_slow_force_hides() {
+  const double p_accept = context_.options.p_accept;
+  const bool none = std::none_of(ranked_.begin(), ranked_.end(), [this](const RankedCandidate& e) { return significant(e); });
+  if (!none || warning_of_slow_force(context_.estimate).empty()) return false;
+  const auto begin = [&](const RankedCandidate& e) { return e.screening->p_value < p_accept ? e.screening : nullptr; };
+  return refit_wave({.begin = begin, .name = "_slow_force"});
 }
 
 bool RefitWaves::was_cut_off(const RankedCandidate& e) const {

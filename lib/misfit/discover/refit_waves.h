@@ -51,6 +51,9 @@ class RefitWaves {
   bool refit_the_other_significant_ones();
   /// The first few significant ones: none could be accepted as it is; and of those that the free run nominates, what went elsewhere.
   bool refit_afresh();
+  /// Where nothing is significant and the random force is slow (slow_force.h), it may stand for what is missing, and leaves a score next to
+  /// nothing of it: those that would be significant if they were the only ones.
+  bool refit_what_a_slow_force_hides();
   void refit_alone(const RankedCandidate& candidate);
 
   /// higher_without(), from the refits from which it was not looked for yet.

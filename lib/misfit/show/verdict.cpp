@@ -16,6 +16,7 @@
 #include "misfit/show/rows.h"
 #include "misfit/show/verdict_candidate.h"
 #include "misfit/show/verdict_estimates.h"
+#include "misfit/show/verdict_evidence.h"
 #include "misfit/show/verdict_ladder.h"
 
 namespace misfit {
@@ -380,6 +381,9 @@ class VerdictBuilder {
     }
   }
   void nothing_missing(const Discovery& d) {
+    if (const std::string why = why_nothing_is_known(*fit_); !why.empty())
+      return say(VerdictKind::not_decided, "whether an effect is missing cannot be said: " + why, command("open"));
+    if (const std::string doubt = motion_in_doubt(in_.comparison); !doubt.empty()) note(doubt);
     const std::size_t tested_alone = effects_tested(d) + curves_tested(d);
     const std::string tested =
         "no effect is found missing" + (tested_alone == 0   ? std::string(", but none of the library was tested")

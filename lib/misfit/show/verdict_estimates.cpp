@@ -55,7 +55,9 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
       line += fmt::format(" in the last model ({} in rung {})", values_of(rung.parameters), rung.id);
     if (rung.kept) line += (seen ? "" : "; ") + *rung.kept;
     if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
-    out.push_back(line + (rung.also ? "; " + *rung.also : ""));
+    if (rung.also) line += "; " + *rung.also;
+    if (rung.alike) line += "; when it was added these data could not tell it from " + join_words(*rung.alike);
+    out.push_back(line);
   }
   if (const std::string rest = numbers_of(others_of_last(ladder)); !rest.empty())
     out.push_back((out.empty() ? "parameters of the last model: " : "other parameters of the last model: ") + rest);

@@ -348,10 +348,7 @@ const Rung& ModelLadder::add(const std::string& effect, const std::optional<Cand
     if (from && from->predicted_drop > 0.0) rung.predicted_drop = from->predicted_drop;
     if (!rung.predicted_drop) append_note(rung.note, not_predicted(registry_.effect(effect), from));
     if (from) append_note(rung.note, taken_over_in_words(from->fixed_in_model));
-    if (from) rung.roles = from->roles;
-    if (from) rung.also = from->also;
-    if (from) rung.holds = from->holds;
-    if (from) rung.remained = from->remaining;
+    if (from) describe_added(*from, rung);
     if (const std::string kept = from ? not_estimated_in_words(*from, registry_.effect(effect).spec(), work->fit) : ""; !kept.empty()) {
       rung.kept = kept;
       append_note(rung.note, kept);

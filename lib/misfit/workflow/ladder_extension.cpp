@@ -18,6 +18,7 @@
 #include "misfit/workflow/assess/without.h"
 #include "misfit/workflow/estimate/estimate.h"
 #include "misfit/workflow/ladder.h"
+#include "misfit/workflow/ladder_candidates.h"
 
 namespace misfit {
 namespace {
@@ -33,25 +34,6 @@ struct OnLadder {
   int searched_with = -1;    ///< of a curve of unknown form: the last rung beside which a named effect was looked for in its place
 };
 
-/// Those of the round that were refitted and explain more than half of what the accepted one does.
-std::vector<Candidate> alternatives_to(const Candidate& accepted, const Discovery& discovery) {
-  std::vector<Candidate> out;
-  constexpr std::size_t most = 3;
-  for (const Candidate& c : discovery.candidates) {
-    const bool same = c.effect == accepted.effect && c.roles == accepted.roles;
-    if (same || !c.actual_drop || !accepted.actual_drop || !(*c.actual_drop > 0.5 * *accepted.actual_drop) || out.size() == most) continue;
-    out.push_back(c);
-  }
-  return out;
-}
-
-/// Where its refit ended, other effects were in the model.
-Candidate without_refit(Candidate candidate) {
-  candidate.refit_values.clear();
-  candidate.refit_log_noise.clear();
-  return candidate;
-}
-
 /// It fixes nothing that the model does not have: what it fixed may have left with another effect.
 Candidate as_in(const Session& session, Candidate candidate) {
   const Model model = provisional_model(session.model.request, session.registry);
@@ -59,18 +41,6 @@ Candidate as_in(const Session& session, Candidate candidate) {
     return std::none_of(model.parameters.begin(), model.parameters.end(), [&](const Parameter& p) { return p.name == held.first; });
   });
   return candidate;
-}
-
-/// One more in the middle of each interval. Empty: there would be too many to be fitted.
-std::vector<double> twice_as_many(const std::vector<double>& knots) {
-  constexpr std::size_t most = 65;
-  std::vector<double> out;
-  for (std::size_t i = 0; i < knots.size(); ++i) {
-    if (i > 0) out.push_back(0.5 * (knots[i - 1] + knots[i]));
-    out.push_back(knots[i]);
-  }
-  if (out.size() > most) out.clear();
-  return out;
 }
 
 std::string in_words(const std::string& name, const Without& without, double families) {
@@ -159,16 +129,16 @@ class Extension {
   }
 
   /// Two things are missing, and one that is right one sample ahead predicts worse farther ahead without the other: both become rungs where
-  /// with both of them nothing predicts worse than without. False: there is no such one, or nothing that does this.
+  /// with both nothing predicts worse than without. False: there is no such one, or nothing that does this.
   bool begin_with_two(const Discovery& discovery) {
     const Candidate* first = candidate_short_ahead(discovery);
     if (first == nullptr || has_left(*first)) return false;
-    if (can_be_added(*first) && holds_beside_another(*first)) return true;
+    if (can_be_added(*first) && holds_beside_another(*first, first->why)) return true;
     ladder_.gained_too_little(effect_at(first->effect, first->roles), why_off_);
     return false;
   }
-  /// Of the last rung's, which by itself is refused. False: its rung is off again.
-  bool holds_beside_another(const Candidate& first) {
+  /// Of the last rung's, which by itself is refused for `why`. False: its rung is off again.
+  bool holds_beside_another(const Candidate& first, const std::string& why) {
     const std::string name = effect_at(first.effect, first.roles);
     const Rung alone = ladder_.ladder().rungs.back(), without = rung_of(alone.parent);
     ladder_.root().note(name + " predicts worse farther ahead by itself: it stays if something else is missing beside it that mends this");
@@ -178,7 +148,7 @@ class Extension {
       ladder_.remove(std::to_string(alone.id));
       throw;
     }
-    why_off_ = "by itself, " + first.why + ", and nothing was found that mends this";
+    why_off_ = "by itself, " + why + ", and nothing was found that mends this";
     ladder_.root().note(name + ": " + why_off_ + ": its rung is taken off");
     take_off_last();
     return false;
@@ -196,11 +166,14 @@ class Extension {
     return false;
   }
 
-  /// A curve of unknown form was added in vain: begin_with_one() without it. False: none was tried, or that does not do.
+  /// A curve of unknown form was added in vain: the effect that explains most beside it becomes a rung, where by itself it predicts worse
+  /// farther ahead with another one, as in begin_with_two(). False: no curve was fitted, or that does not do.
   bool begin_after_the_curve(const Discovery& discovery) {
-    if (discovery.unexplained_effects.empty() || lacks_pulses_only(ladder_.last())) return false;
-    const std::optional<Candidate> candidate = candidate_after_the_curve(discovery);
-    return candidate && !has_left(*candidate) && add_tentatively(*candidate, alternatives_to(*candidate, discovery));
+    if (!curve_in_vain_) return false;
+    const std::optional<Candidate> first = candidate_after_the_curve(discovery);
+    if (!first || has_left(*first) || !can_be_added(*first, alternatives_to(*first, discovery))) return false;
+    const std::string why = why_not_kept(ladder_.ladder().rungs.back());
+    return why.empty() || holds_beside_another(*first, why);
   }
 
   void take_off_last() {
@@ -211,6 +184,7 @@ class Extension {
   /// A force or an error of unknown form becomes a rung as it is: a curve of the quantity that it depends on. What else is missing can then
   /// be found beside it. False: there is none, or it gains nothing.
   bool add_curve(const Discovery& discovery) {
+    curve_in_vain_ = false;
     if (!discovery.unexplained_effects.empty() && lacks_pulses_only(ladder_.last()))
       return false;  // where they happened to be is no reason
     return std::any_of(discovery.unexplained_effects.begin(), discovery.unexplained_effects.end(),
@@ -225,6 +199,7 @@ class Extension {
     const std::optional<Candidate> curve = predict_effect(ladder_.last(), effect, {roles});
     if (!curve || has_left(*curve)) return false;
     if (add_tentatively(*curve, {})) return true;
+    curve_in_vain_ = was_fitted_;
     ladder_.gained_too_little(effect_at(effect, roles), why_off_);
     return false;
   }
@@ -284,6 +259,7 @@ class Extension {
   /// add(), of what may not be possible to fit.
   bool can_be_added(const Candidate& candidate, std::vector<Candidate> alternatives = {}) {
     const std::string name = effect_at(candidate.effect, candidate.roles);
+    was_fitted_ = true;
     try {
       return add(candidate, std::move(alternatives));
     } catch (const InputError& error) {  // what a curve is one of hardly moves in the fit that comes first
@@ -295,6 +271,7 @@ class Extension {
   }
 
   bool cannot_be_added(const std::string& name, const std::exception& error) {
+    was_fitted_ = false;
     why_off_ = std::string("it cannot be fitted: ") + error.what();
     ladder_.root().note(name + " cannot be fitted: " + error.what());
     return false;
@@ -433,19 +410,13 @@ class Extension {
   const LadderListener& listener_;
   std::vector<OnLadder> added_;
   std::vector<Candidate> left_;
-  double families_ = 1.0;  ///< that the last round tried
-  std::string why_off_;    ///< why what was added last is off again: a clause
+  double families_ = 1.0;       ///< that the last round tried
+  std::string why_off_;         ///< why what was added last is off again: a clause
+  bool was_fitted_ = true;      ///< what was added last
+  bool curve_in_vain_ = false;  ///< of this round: a curve of unknown form was fitted and is off again
 };
 
 }  // namespace
-
-std::optional<Candidate> accepted_candidate(const Discovery& discovery, const Registry& registry) {
-  const std::vector<std::string> known = registry.effect_keys();
-  for (const auto& candidate : discovery.candidates) {
-    if (candidate.accepted && std::find(known.begin(), known.end(), candidate.effect) != known.end()) return candidate;
-  }
-  return std::nullopt;
-}
 
 void extend_ladder(ModelLadder& ladder, const Registry& registry, const LadderListener& listener) {
   Extension(ladder, registry, listener).run();

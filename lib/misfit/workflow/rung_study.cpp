@@ -40,14 +40,14 @@ double least_distance(const std::vector<double>& rising) {
   return out;
 }
 
-/// The study's text with the knots of the effect's curve of unknown form where discovery found it [SI]; in the unit that is shown, to a
-/// hundredth of the distance of two.
-std::string with_knots(const std::string& text, const std::string& effect, const Curve& curve, const std::vector<double>& knots) {
+/// The study's text with the knots of a curve of unknown form where discovery found it [SI]; in the unit that is shown, to a hundredth of
+/// the distance of two.
+std::string with_knots(const std::string& text, const Curve& curve, const std::vector<double>& knots) {
   const double shown = convert_difference(1.0, curve.of_unit, display_unit(curve.of_unit)), apart = shown * least_distance(knots);
   const int digits = std::clamp(2 - static_cast<int>(std::floor(std::log10(apart))), 0, std::numeric_limits<double>::max_digits10);
   std::string list;
   for (const double knot : knots) list += fmt::format("{}{:.{}f}", list.empty() ? "" : ", ", shown * knot, digits);
-  return with_value(with_value(text, {"curves", effect, "of"}, fmt::format("\"{}\"", curve.of)), {"curves", effect, "knots"},
+  return with_value(with_value(text, {"curves", curve.name, "of"}, fmt::format("\"{}\"", curve.of)), {"curves", curve.name, "knots"},
                     "[" + list + "]");
 }
 
@@ -164,7 +164,7 @@ std::string study_with_effect(const Session& session, const std::string& effect,
   const std::string text = text_for_folder(session.study, folder);
   return edited(session, [&] {
     std::string added = with_effect(text, effect_line(name, effect, roles, start));
-    if (from && from->knots.size() > 1) added = with_knots(added, name, assembled.curves.back(), from->knots);
+    if (from && from->knots.size() > 1) added = with_knots(added, assembled.curves.back(), from->knots);
     return from ? with_fixed(added, session, with, from->fixed_in_model) : added;
   });
 }

@@ -1,0 +1,29 @@
+#include "misfit/show/verdict_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "misfit/core/text.h"
+
+namespace misfit {
+
+std::string why_nothing_is_known(const Fit& fit) {
+  const bool known = std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const auto& p) { return p.second.sigma > 0.0; });
+  if (!fit.parameters.empty() && !known)
+    return "these data are too few to estimate the model, none of whose parameters has a standard error";
+  const bool compared = std::any_of(fit.predictions.begin(), fit.predictions.end(), [](const auto& p) { return p.nrmse.has_value(); });
+  const bool follows = std::any_of(fit.predictions.begin(), fit.predictions.end(), [](const auto& p) { return p.nrmse && *p.nrmse < 1.0; });
+  return compared && !follows ? "the fitted model predicts the motion no better than its mean does" : "";
+}
+
+std::string motion_in_doubt(const Comparison* comparison) {
+  constexpr double significant = 0.01;
+  if (comparison == nullptr || !comparison->motion || comparison->motion->p_value > significant) return "";
+  return fmt::format(
+      "but the fitted model does not make the statistics of the measured motion ({}): something slow or rare, which one "
+      "sample hardly shows, may be missing",
+      p_equals(comparison->motion->p_value));
+}
+
+}  // namespace misfit

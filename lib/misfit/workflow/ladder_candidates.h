@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "misfit/data/candidates.h"
+
+namespace misfit {
+
+/// Those of the round that were refitted and explain more than half of what the accepted one does: the first three.
+[[nodiscard]] std::vector<Candidate> alternatives_to(const Candidate& accepted, const Discovery& discovery);
+
+/// Where its refit ended, other effects were in the model.
+[[nodiscard]] Candidate without_refit(Candidate candidate);
+
+/// Knots with one more in the middle of each interval. Empty: there would be too many to be fitted.
+[[nodiscard]] std::vector<double> twice_as_many(const std::vector<double>& knots);
+
+}  // namespace misfit
