@@ -54,6 +54,8 @@ TEST(ColumnHeader, ASubscriptBehindALineIsNoUnit) {
   for (const char* header : {"t_min", "time_min", "Elapsed Time_min"}) EXPECT_EQ(read_header(header).unit, "min") << header;
   EXPECT_EQ(read_header("T_K").unit, "K");
   EXPECT_EQ(read_header("T_degC").unit, "degC");
+  EXPECT_EQ(read_header("aussen °C").unit, "degC");
+  EXPECT_EQ(read_header("aussen °C").name, "aussen");
   EXPECT_EQ(read_header("torque_Nm").unit, "N m");
   EXPECT_TRUE(read_header("p_s").of_one_letter);
   EXPECT_FALSE(read_header("p[s]").of_one_letter);

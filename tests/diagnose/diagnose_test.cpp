@@ -17,7 +17,7 @@ TEST(Diagnose, SaysNowhereWhereNothingIsMissing) {
   const Diagnosis found = diagnose(fitted(request_for(flights), flights));
   for (const auto& map : found.maps) EXPECT_GT(map.p_corrected, 0.01) << map.port << " over " << map.quantity;
   ASSERT_FALSE(found.sentences.empty());
-  EXPECT_THAT(found.sentences.front(), testing::StartsWith("no map of the missing force differs significantly from zero"));
+  EXPECT_THAT(found.sentences.front(), testing::StartsWith("no map of the missing force of this model differs significantly from zero"));
 }
 
 TEST(Diagnose, MapsShowWhereAPlantedForceActs) {

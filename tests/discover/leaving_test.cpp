@@ -55,6 +55,27 @@ TEST(WithoutAnEffect, WhatItsLineSaysGoesWithIt) {
   EXPECT_EQ(without->request.parameters.count("viscous_friction.viscosity"), 1U);
 }
 
+/// A bare name that two effects have is that of the first: without it, it would become that of the other one.
+TEST(WithoutAnEffect, WhatIsCalledByItsBareNameGoesWithIt) {
+  EffectRequest another = effect("coulomb_friction");
+  another.name = "another";
+  ModelRequest request = cart({effect("viscous_friction"), effect("coulomb_friction"), another});
+  request.parameters["stiffness"].free = true;
+  request.parameters["width"].value = 0.4;
+  request.parameters["another.width"].value = 0.05;
+  const std::vector<Signals> signals = {record_of_cart({}, {})};
+  const FilterEstimate estimate = estimate_filter(assemble(request, registry()), {}, signals);
+  const auto first = without_effect({estimate, request, registry(), signals}, "coulomb_friction", 1);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->request.parameters.count("width"), 0U);
+  const int left = first->estimate.model.find_parameter("width");
+  ASSERT_GE(left, 0);
+  EXPECT_EQ(first->estimate.model.parameters[left].value, 0.05);
+  const auto second = without_effect({estimate, request, registry(), signals}, "another", 1);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->request.parameters.count("width"), 1U);
+}
+
 TEST(WithoutAnEffect, WhatIsNeededStays) {
   EXPECT_FALSE(may_leave(fitted().estimate, "viscous_friction"));
   const auto without = fitted().without("viscous_friction");

@@ -123,7 +123,7 @@ NameAndUnit read_header(const std::string& header) {
     }
     return out;
   }
-  const std::string name = as_name(header);
+  const std::string name = as_name(plain_unit(header));
   std::size_t best = 0;
   NameAndUnit out;
   out.name = name;

@@ -233,7 +233,7 @@ void conclude(Diagnosis& out) {
     const std::string best = out.maps.empty() ? ""
                                               : ": the most significant map over one quantity, " + out.maps.front().port + " over " +
                                                     out.maps.front().quantity + ", has " + p_equals(out.maps.front().p_corrected);
-    out.sentences.push_back("no map of the missing force differs significantly from zero" + best);
+    out.sentences.push_back("no map of the missing force of this model differs significantly from zero" + best);
   }
   const auto time = std::find_if(out.maps.begin(), out.maps.end(), [](const ForceMap& map) { return map.quantity == "time"; });
   if (said > 0 && time != out.maps.end() && time->p_corrected > significant)

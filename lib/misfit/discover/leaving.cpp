@@ -43,14 +43,42 @@ std::vector<int> own_parameters(const Model& model, const BoundEffect& effect) {
   return out;
 }
 
+/// Does the first effect that has a coefficient of this bare name come before `effect`?
+bool comes_after_another_with(const std::string& bare, const Model& model, const BoundEffect& effect) {
+  for (const BoundEffect& other : model.effects) {
+    if (other.name == effect.name) return false;
+    const std::string full = other.name + "." + bare;
+    const auto is_it = [&](const auto& named) { return named.name == full; };
+    if (std::any_of(model.parameters.begin(), model.parameters.end(), is_it)) return true;
+    if (std::any_of(model.curves.begin(), model.curves.end(), is_it)) return true;
+  }
+  return false;
+}
+
+/// How a study may call a coefficient of an effect: by its name in the model, and of several effects that have one of that name, the first
+/// one's also by that name alone.
+std::vector<std::string> names_in_request(const std::string& in_model, const Model& model, const BoundEffect& effect) {
+  const std::string prefix = effect.name + ".";
+  if (!in_model.starts_with(prefix)) return {in_model};
+  const std::string bare = in_model.substr(prefix.size());
+  const bool of_system = model.find_parameter(bare) >= 0;
+  if (of_system || comes_after_another_with(bare, model, effect)) return {in_model};
+  return {in_model, bare};
+}
+
 ModelRequest request_without(const ModelRequest& request, const Model& model, const BoundEffect& effect) {
   ModelRequest out = request;
   std::erase_if(out.effects, [&](const EffectRequest& e) { return e.name == effect.name; });
   for (std::size_t c = 0; c < effect.coefficients.size(); ++c) {
     const BoundCoefficient& coefficient = effect.coefficients[c];
     if (effect.effect->spec().coefficients[c].shared) continue;
-    if (coefficient.curve >= 0) out.curves.erase(model.curves[coefficient.curve].name);
-    if (coefficient.parameter >= 0) out.parameters.erase(model.parameters[coefficient.parameter].name);
+    if (coefficient.curve >= 0) {
+      for (const std::string& name : names_in_request(model.curves[coefficient.curve].name, model, effect)) out.curves.erase(name);
+    }
+    if (coefficient.parameter >= 0) {
+      for (const std::string& name : names_in_request(model.parameters[coefficient.parameter].name, model, effect))
+        out.parameters.erase(name);
+    }
   }
   const auto of_effect = [&](const auto& named) { return named.first.starts_with(effect.name + "."); };  // as its line in a study has them
   std::erase_if(out.parameters, of_effect);

@@ -273,8 +273,10 @@ class ColumnClassifier {
       ColumnSurvey& c = out_.columns[i];
       c.is_measured_input = c.use == ColumnUse::input && is_smooth(values(i));
     }
-    if (!of_use(ColumnUse::output).empty()) return;
-    take_an_input_as_output(open);
+    if (of_use(ColumnUse::output).empty()) take_an_input_as_output(open);
+    if (of_use(ColumnUse::input).empty())
+      out_.remarks.emplace_back(
+          "no column is an input: what drives the motion, if anything does, is not in this recording (or named by --input)");
   }
 
   /// It stays where it is for many samples: somebody sets it.

@@ -7,6 +7,7 @@
 #include "misfit/core/display.h"
 #include "misfit/core/file_name.h"
 #include "misfit/core/lists.h"
+#include "misfit/data/estimators.h"
 #include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
 #include "misfit/report/extent.h"
@@ -62,14 +63,26 @@ std::vector<double> normalised_residuals(const ChannelPrediction& c) {
   return r;
 }
 
-Panel motion_panel(const ChannelPrediction& c) {
+/// What the line beside the measurements is: a prediction one sample ahead lies on them in every model.
+const char* words_of_prediction(const std::string& method) {
+  return method == random_force_estimator().name ? "predicted one sample ahead" : "predicted";
+}
+
+Panel motion_panel(const std::string& method, const ChannelPrediction& c) {
   Panel panel{.y_label = c.channel, .y_unit = display_level_unit(c.unit), .height = 270.0};
   std::vector<bool> estimation = c.held_out;
   estimation.flip();
   panel.series.push_back(
       {"measured", "measured", Style::points, black, c.t, masked(display_levels(c.measured, c.unit), estimation), {}, {}});
-  panel.series.push_back(
-      {"predicted", "predicted", Style::line, palette(0), c.t, masked(display_levels(c.predicted, c.unit), estimation), {}, {}, 1.4});
+  panel.series.push_back({"predicted",
+                          words_of_prediction(method),
+                          Style::line,
+                          palette(0),
+                          c.t,
+                          masked(display_levels(c.predicted, c.unit), estimation),
+                          {},
+                          {},
+                          1.4});
   if (std::find(c.held_out.begin(), c.held_out.end(), true) != c.held_out.end()) {
     panel.series.push_back({"measured_held_out",
                             "measured, held out",
@@ -214,7 +227,7 @@ Figure motion_figure(const std::string& method, const ChannelPrediction& channel
     figure.caption += fmt::format(" {} of them, less certain than ten times the usual sigma, may lie beyond the axis.", count);
   figure.x_label = "time";
   figure.x_unit = std::string("s");  // g++ 12 warns wrongly about a one-letter literal assigned
-  figure.panels = {motion_panel(c), residual_panel(c)};
+  figure.panels = {motion_panel(method, c), residual_panel(c)};
   if (std::string beyond = beyond_axis(c, figure.panels.back()); !beyond.empty()) figure.notes.push_back(std::move(beyond));
   return figure;
 }

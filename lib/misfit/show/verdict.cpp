@@ -352,7 +352,10 @@ class VerdictBuilder {
 
   void nothing_accepted(const Discovery& d) {
     if (d.outcome == SearchOutcome::not_decided || d.outcome == SearchOutcome::not_finished) {
-      say(VerdictKind::not_decided, d.verdict, command("discover") + more_time(d.outcome));
+      const std::string next = command("discover") + more_time(d.outcome);
+      if (!effects_added_) return say(VerdictKind::not_decided, d.verdict, next);
+      added("whether more is missing is not decided", next, VerdictKind::not_decided);
+      note(d.verdict);
     } else if (!d.unexplained_port.empty()) {
       if (const ForcePulses* pulses = pulses_left()) return missing_in_pulses(*pulses);
       if (const Candidate* first = candidate_to_begin_with(d); first != nullptr && first->holds) return missing(*first);
