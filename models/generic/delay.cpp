@@ -11,11 +11,11 @@ struct Delay {
   static constexpr const char* formula = "F = delayed_gain (u(t - tau) - u(t))";
   static constexpr const char* symbols =
       "delayed_gain [port/input]: the gain by which the model lets the input act, tau delay [s], u the input [any] as recorded: held or "
-      "straight between its samples, its first value before them";
+      "straight between its samples; before them a constant, which filter_error estimates, or its first value";
   static constexpr const char* valid = "any recorded input; jumps too";
   static constexpr const char* size = "tau = 0.1 s at 1 rad/s: an error of 10 % of the input's amplitude, 90 deg behind it";
   static constexpr const char* source = "Ljung, System Identification, 2nd ed., 4.2: input delay n_k, here with fractions of a step";
-  static constexpr const char* excludes = "delays that change, what acted before the recording began";
+  static constexpr const char* excludes = "delays that change, inputs that changed less than tau before the recording began";
 
   enum Quantity { input };
   static constexpr Role quantities[] = {{.name = "input", .unit = "*", .late_by = "delay"}};

@@ -49,7 +49,9 @@ Eigen::VectorXd slopes_of_spline(const std::vector<double>& t, const Eigen::Vect
 /// One input of a record as a function of time.
 class InputInTime {
  public:
-  InputInTime(const RecordedInputs& record, int input) : record_(record), input_(input), hold_(record.hold[input]) {
+  /// `before`: added to the first value, before the record.
+  InputInTime(const RecordedInputs& record, int input, double before)
+      : record_(record), input_(input), before_(before), hold_(record.hold[input]) {
     if (hold_ == Hold::band_limited && record.slopes.empty()) hold_ = Hold::first_order;
   }
 
@@ -63,6 +65,7 @@ class InputInTime {
 
   /// Between samples k and k + 1.
   [[nodiscard]] RunningInput between(std::size_t k, double time, Hold hold) const {
+    if (time < record_.t.front()) return {record_.value(0, input_) + before_, 0.0};
     if (k + 1 >= record_.t.size() || time <= record_.t[k]) return {record_.value(k, input_), 0.0};
     const double length = record_.t[k + 1] - record_.t[k];
     return run_between(hold, sample(k), sample(k + 1), (time - record_.t[k]) / length, length);
@@ -132,6 +135,7 @@ class InputInTime {
 
   const RecordedInputs& record_;
   int input_;
+  double before_;
   Hold hold_;
 };
 
@@ -157,7 +161,7 @@ RunningInput input_within(Hold hold, const InputsAt& begin, const InputsAt& end,
 
 LateInput late_input(const InputsAt& inputs, int input, double t, double delay) {
   if (inputs.record == nullptr) return {inputs.values[input], 0.0};
-  const InputInTime u(*inputs.record, input);
+  const InputInTime u(*inputs.record, input, inputs.before == nullptr ? 0.0 : inputs.before[input]);
   const double begin = std::min(inputs.from, inputs.to), length = std::abs(inputs.to - inputs.from);
   if (!(length > 0.0)) {
     const RunningInput then = u.running(t - delay);

@@ -29,6 +29,8 @@ struct InputsAt {
   const RecordedInputs* record = nullptr;  ///< nullptr: the inputs have always been as they are
   double from = 0.0, to = 0.0;
   const double* slopes = nullptr;  ///< du/dt; nullptr: not known, and no input is taken for band limited
+  /// Of each input, how far from its first value it was before the record; nullptr: there it was as at the first sample.
+  const double* before = nullptr;
 
   InputsAt() = default;
   InputsAt(const double* now) : values(now) {}  // NOLINT(google-explicit-constructor, hicpp-explicit-conversions): no past
@@ -49,10 +51,10 @@ struct LateInput {
   double value = 0.0, by_delay = 0.0;
 };
 
-/// u(t − delay); before the record its first value, after it the last. Where an interval is run, the straight line over it that has the
-/// mean and the first moment of what the input was, by its Hold, over the interval that is `delay` earlier: so jumps that fall between two
-/// samples act at their time to third order in the interval, a delay of whole intervals of even samples is exact, and the derivative is
-/// that of the line. At a sample: between samples linearly, or as a band limited input runs.
+/// u(t − delay); before the record its first value (and what InputsAt::before adds), after it the last. Where an interval is run, the
+/// straight line over it that has the mean and the first moment of what the input was, by its Hold, over the interval that is `delay`
+/// earlier: so jumps that fall between two samples act at their time to third order in the interval, a delay of whole intervals of even
+/// samples is exact, and the derivative is that of the line. At a sample: between samples linearly, or as a band limited input runs.
 [[nodiscard]] LateInput late_input(const InputsAt& inputs, int input, double t, double delay);
 
 }  // namespace misfit

@@ -110,7 +110,9 @@ int Stepper::pieces_of(const Interval& interval, double from, const StepPart& pa
 
 InputsAt Stepper::inputs_at(const Interval& interval, double fraction, double* u) const {
   for (int i = 0; i < nu_; ++i) u[i] = input_within(holds_[i], interval.u0, interval.u1, i, fraction, interval.t1 - interval.t0).value;
-  return {u, interval.u0.record, interval.t0, interval.t1};
+  InputsAt out{u, interval.u0.record, interval.t0, interval.t1};
+  out.before = interval.u0.before;
+  return out;
 }
 
 void Stepper::explicit_step(double* x, const Interval& interval, const Share& share) {

@@ -74,10 +74,10 @@ void fields(Bytes& bytes, MaybeConst<FilterData> auto& data) {
 
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<LinearisedRun> auto& data) {
-  auto& [n, ny, samples, end, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik,
-         counted, validated] = data;
-  bytes(n, ny, samples, end, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, P, loglik, validation_loglik,
-        counted, validated);
+  auto& [n, ny, samples, end, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, past_response, past_mean, P,
+         loglik, validation_loglik, counted, validated] = data;
+  bytes(n, ny, samples, end, finite, failed_at, Phi, H, z, correction, predicted, K, Kj, y, y_variance, past_response, past_mean, P, loglik,
+        validation_loglik, counted, validated);
 }
 
 template <class Bytes>

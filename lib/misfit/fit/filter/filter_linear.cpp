@@ -5,6 +5,7 @@
 #include "misfit/fit/filter/filter_run.h"
 #include "misfit/fit/filter/filter_sizes.h"
 #include "misfit/fit/filter/filter_steps.h"
+#include "misfit/fit/filter/unknown_past.h"
 
 namespace misfit {
 namespace {
@@ -17,6 +18,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
   out.resize(trace.samples * ny, !data.steps.empty());
   Kalman<M, NY> kalman(n, ny);
   start_covariance(model, data, noise, kalman);
+  UnknownPast<M, NY> past(model, data, n, ny);
   NoiseSteps steps(noise);
   typename Kalman<M, NY>::StateVector a = Kalman<M, NY>::StateVector::Zero(n), correction = a, shifted = a;
   typename Kalman<M, NY>::StateMatrix phi = Kalman<M, NY>::StateMatrix::Zero(n, n);
@@ -32,6 +34,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
       const double departure = trace.z[at] - a.dot(kalman.x) - kalman.j[2 * o];
       const Reading reading = out.take(at, departure, variance, data.steps.empty() ? 0.0 : data.steps[o]);
       kalman.update(reading.e, reading.S);
+      past.update(a, o, kalman, reading.e, reading.S);
     }
     if (k + 1 == end) break;
     phi = trace.Phi_at(k);
@@ -49,7 +52,9 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
       }
     }
     correction = kalman.x - trace.correction_at(k);
+    shifted += past.recall(trace, k - data.first);
     kalman.predict(phi, steps.at(h), model);
+    past.predict(phi, steps.at(h), kalman);
     kalman.x = phi.lazyProduct(correction) + shifted;
   }
   return out;

@@ -7,6 +7,7 @@
 
 #include "misfit/fit/filter/filter_sensitivities.h"
 #include "misfit/fit/filter/filter_steps.h"
+#include "misfit/fit/filter/unknown_past.h"
 #include "misfit/sim/sampled_outputs.h"
 
 namespace misfit {
@@ -36,12 +37,13 @@ class FilterPass {
         ny_(evaluator_.outputs()),
         N_(n_),
         kalman_(n_, ny_),
+        past_(model_, data_, n_, ny_),
         steps_(input.noise),
         D_(N_ * kRowStride),
         outputs_(stepper),
         a_(StateVector::Zero(n_)) {
     start_covariance(model_, data_, noise_, kalman_);
-    if (options_.jacobian != nullptr) sensitivities_.begin(*options_.jacobian, data_, {n_, ny_, evaluator_.columns()});
+    if (options_.jacobian != nullptr) sensitivities_.begin(*options_.jacobian, data_, {n_, ny_, evaluator_.columns(), past_.count()});
     std::copy_n(data_.start.data(), n_, x_.begin());
     prepare_at({stepper_, signals_, data_.inputs}, data_.first, x_.data());
   }
@@ -113,12 +115,14 @@ class FilterPass {
     if (!std::isfinite(reading.minus_log)) return false;
     count(use, -reading.minus_log);
     kalman_.update(reading.e, reading.S);
+    past_.update(a_, o, kalman_, reading.e, reading.S);
     std::copy_n(kalman_.gain.data(), n_, trace_.K.data() + at * N_);
     std::copy_n(kalman_.gain_coloured.data(), 2 * ny_, trace_.Kj.data() + at * 2 * ny_);
     if (options_.jacobian == nullptr) return true;
     sensitivities_.predict_output(trace_.H.data() + at * N_, o, outputs_.row(o) + n_, slots_);
     if (use == SampleRole::counted) sensitivities_.keep(at, trace_);
     sensitivities_.update(kalman_.gain.data(), kalman_.gain_coloured.data());
+    if (past_.is_reached()) sensitivities_.update_past(past_.gain().data());
     return true;
   }
 
@@ -160,7 +164,10 @@ class FilterPass {
   }
 
   bool step(std::size_t k) {
-    const Interval interval = interval_after({stepper_, signals_, data_.inputs}, k);
+    Interval interval = interval_after({stepper_, signals_, data_.inputs}, k);
+    if (!past_.look_ahead(stepper_, x_.data(), interval)) return false;
+    interval.u0.before = past_.before();
+    past_.keep(trace_);
     if (!stepper_.step_linear(x_.data(), interval, slots_, D_.data())) return false;
     const Eigen::Map<const Eigen::Matrix<double, M, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor>, 0, Eigen::OuterStride<>> phi(
         D_.data(), n_, n_, Eigen::OuterStride<>(kRowStride));
@@ -168,7 +175,10 @@ class FilterPass {
       std::copy_n(D_.data() + static_cast<std::size_t>(i) * kRowStride, n_, trace_.Phi.data() + (k * N_ + i) * N_);
     const NoiseStep& noise_step = steps_.at(interval.t1 - interval.t0);
     kalman_.predict(phi, noise_step, model_);
-    if (options_.jacobian != nullptr) sensitivities_.step(D_.data(), slots_, noise_step);
+    past_.predict(phi, noise_step, kalman_);
+    if (options_.jacobian == nullptr) return true;
+    sensitivities_.step(D_.data(), slots_, noise_step);
+    if (past_.is_reached()) sensitivities_.add_past(past_.response());
     return true;
   }
 
@@ -183,6 +193,7 @@ class FilterPass {
   int n_, ny_;
   std::size_t N_;
   Kalman<M, NY> kalman_;
+  UnknownPast<M, NY> past_;
   NoiseSteps steps_;
   std::vector<double> D_;
   SampledOutputs outputs_;

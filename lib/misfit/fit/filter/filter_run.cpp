@@ -26,6 +26,8 @@ void resize(FilterTrace& trace, int n, int ny, std::size_t samples, bool in_step
   trace.y.assign(samples * ny, std::nan(""));
   trace.y_variance.assign(samples * ny, std::nan(""));
   trace.P.clear();
+  trace.past_response.clear();
+  trace.past_mean.clear();
   trace.end = samples;
   trace.finite = false;
   trace.loglik = trace.validation_loglik = 0.0;

@@ -89,6 +89,9 @@ struct LinearisedRun {
   std::vector<double> K;              ///< gains on the model's states: ny × n
   std::vector<double> Kj;             ///< gains on the states of the coloured noise: ny × 2 ny
   std::vector<double> y, y_variance;  ///< one-step prediction of each channel before any update by the sample (coloured noise included)
+  /// Of each step that the past of inputs reaches (unknown_past.h): ∂(state after it)/∂(past), n × inputs, and the deviations it was taken
+  /// at.
+  std::vector<double> past_response, past_mean;
   std::vector<double> P;  ///< only if asked for: covariance of the predicted state with [states | coloured noise], n × (n + 2 ny)
   double loglik = 0.0, validation_loglik = 0.0;
   std::size_t counted = 0, validated = 0;

@@ -31,6 +31,7 @@ void FilterSensitivities::begin(FilterJacobian& jacobian, const FilterData& data
   const Eigen::Index width = (sizes.columns + block - 1) / block * block;
   model_ = RowMatrix::Zero(sizes.states, width);
   coloured_ = RowMatrix::Zero(2 * static_cast<Eigen::Index>(sizes.outputs), width);
+  past_ = RowMatrix::Zero(sizes.past, width);
   work_.resize(sizes.states, width);
   row_.resize(width);
 }
@@ -52,6 +53,10 @@ void FilterSensitivities::keep(std::size_t place, const FilterTrace& trace) {
 void FilterSensitivities::update(const double* gain, const double* gain_coloured) {
   for (Eigen::Index i = 0; i < model_.rows(); ++i) model_.row(i) -= gain[i] * row_;
   for (Eigen::Index i = 0; i < coloured_.rows(); ++i) coloured_.row(i) -= gain_coloured[i] * row_;
+}
+
+void FilterSensitivities::update_past(const double* gain) {
+  for (Eigen::Index i = 0; i < past_.rows(); ++i) past_.row(i) -= gain[i] * row_;
 }
 
 void FilterSensitivities::step(const double* D, const Slots& slots, const NoiseStep& noise) {
