@@ -410,7 +410,7 @@ def find_and_add():
     readouts = "return [...document.querySelectorAll('#motion .readout, #force .readout')].map((r) => r.textContent)"
     places = "return [...document.querySelectorAll('#time .u-over')].map((o) => [o.getBoundingClientRect().left, o.getBoundingClientRect().top + scrollY])"
     said = page.wait(lambda: all(page.js(readouts)) and page.js(readouts), "the values at the cursor, in all plots")
-    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ · predicted −?[\d.]+\s±\s[\d.]+\spx", said[0]), said
+    assert re.match(r"[\d.]+ s · .*measured −?[\d.]+ · predicted one sample ahead −?[\d.]+\s±\s[\d.]+\spx", said[0]), said
     assert re.match(r"[\d.]+ s · moment_y −?[\d.]+\s±\s[\d.]+\sN m$", said[-2]), said
     before = page.js(places)
     for k in range(8):
