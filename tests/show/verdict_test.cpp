@@ -157,6 +157,8 @@ TEST(Verdict, WhatCouldNotBeToldFromAnEffectWhenItWasAddedIsSaidWithItsValues) {
   Candidate from = candidate("coulomb_friction", 1e-9, true);
   from.group = {"coulomb_friction", "stribeck_friction"};
   describe_added(from, c.ladder->rungs.back());
+  c.ladder->rungs.back().parameters = {{"friction", {2.0, 0.1, "V/s"}}};
+  ASSERT_FALSE(c.verdict().added.empty());
   EXPECT_THAT(c.verdict().added.front(), EndsWith("; when it was added these data could not tell it from stribeck_friction"));
   from.group.clear();
   Rung alone;

@@ -52,7 +52,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
       }
     }
     correction = kalman.x - trace.correction_at(k);
-    shifted += past.recall(trace, k - data.first);
+    past.recall(trace, k - data.first, shifted);
     kalman.predict(phi, steps.at(h), model);
     past.predict(phi, steps.at(h), kalman);
     kalman.x = phi.lazyProduct(correction) + shifted;

@@ -80,16 +80,14 @@ class UnknownPast {
     trace.past_response.insert(trace.past_response.end(), G_.data(), G_.data() + G_.size());
     for (const PastInput& input : inputs_) trace.past_mean.push_back(mean_[input.index]);
   }
-  /// Instead of look_ahead(), at the step of this number (0: the first) in a run about `trace`: the change of the state after it by what
-  /// the past is estimated at here, and was there. Zero where the past is not reached.
-  [[nodiscard]] StateVector recall(const FilterTrace& trace, std::size_t step) {
-    StateVector out = StateVector::Zero(X_.rows());
+  /// Instead of look_ahead(), at the step of this number (0: the first) in a run about `trace`: adds to `shift` what the past does to the
+  /// state after it, being estimated otherwise here than there.
+  void recall(const FilterTrace& trace, std::size_t step, StateVector& shift) {
     const auto size = static_cast<std::size_t>(G_.size()), count = inputs_.size();
     reached_ = reached_ && (step + 1) * size <= trace.past_response.size();
-    if (!reached_) return out;
+    if (!reached_) return;
     std::copy_n(trace.past_response.data() + step * size, size, G_.data());
-    for (std::size_t c = 0; c < count; ++c) out += G_.col(c) * (mean_[inputs_[c].index] - trace.past_mean[step * count + c]);
-    return out;
+    for (std::size_t c = 0; c < count; ++c) shift += G_.col(c) * (mean_[inputs_[c].index] - trace.past_mean[step * count + c]);
   }
 
   /// After Kalman::predict() with the same Φ: [x | e | c] jointly, c constant.
