@@ -592,6 +592,17 @@ TEST(Verdict, ASearchThatRefusesItsBestDoesNotHideWhatWasAdded) {
   EXPECT_EQ(c.verdict().next, "misfit open configs/motor") << "there is always something next";
 }
 
+TEST(Verdict, ASearchThatWasCutOffDoesNotHideWhatWasAdded) {
+  Case c;
+  c.add_effect();
+  c.discovery = searched({candidate("lag", 1e-9, false)}, SearchOutcome::not_decided, "Not decided: the refit of lag was not finished.");
+  const Verdict v = c.verdict();
+  EXPECT_EQ(v.kind, VerdictKind::not_decided);
+  EXPECT_THAT(v.sentence, AllOf(testing::StartsWith("coulomb_friction was missing"), EndsWith("whether more is missing is not decided.")));
+  EXPECT_THAT(v.notes, ElementsAre("Not decided: the refit of lag was not finished."));
+  EXPECT_THAT(v.next, HasSubstr("--time-limit"));
+}
+
 TEST(Verdict, WhatIsStillMissingComesBeforeWhatWasAdded) {
   Case c;
   c.add_effect();
