@@ -104,7 +104,7 @@ TEST(UnknownPast, TheLikelihoodIsThatOfEveryPastWeighedByItsProbability) {
                high = loglik(with_past(recorded, first_command + 1.0));
   const double slope = 0.5 * (high - low), bend = high - 2.0 * at + low;
   const FilterData data = filter_data(model, recorded);
-  const double sigma = departures_of_inputs(data).front();
+  const double sigma = data.input_departures.front();
   ASSERT_NEAR(sigma, 1.2, 0.3);
   const double precision = 1.0 / (sigma * sigma) - bend;
   const double all = at + 0.5 * slope * slope / precision - 0.5 * std::log(sigma * sigma * precision);

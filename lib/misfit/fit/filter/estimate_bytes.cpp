@@ -65,11 +65,11 @@ void fields(Bytes& bytes, MaybeConst<InputTable> auto& data) {
 /// All but the measurements and what is read from them.
 template <class Bytes>
 void fields(Bytes& bytes, MaybeConst<FilterData> auto& data) {
-  auto& [signals, inputs, use, first, start, covariance, steps, read] = data;
+  auto& [signals, inputs, use, first, start, covariance, steps, read, input_departures] = data;
   static_cast<void>(signals);
   static_cast<void>(steps);
   static_cast<void>(read);
-  bytes(inputs, use, first, start, covariance);
+  bytes(inputs, use, first, start, covariance, input_departures);
 }
 
 template <class Bytes>

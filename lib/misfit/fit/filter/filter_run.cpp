@@ -51,6 +51,23 @@ void begin_own_states(const FilterModel& model, FilterData& data) {
   }
 }
 
+/// FilterData::input_departures.
+std::vector<double> departures_of_inputs(const FilterData& data) {
+  const RecordedInputs& record = data.inputs.recorded;
+  std::vector<double> out(record.hold.size(), 0.0);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    double squares = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < record.t.size(); ++k) {
+      const double departure = record.value(k, static_cast<int>(i)) - record.value(0, static_cast<int>(i));
+      if (data.signals->held_out(k) || !std::isfinite(departure)) continue;
+      squares += departure * departure;
+      count += 1.0;
+    }
+    out[i] = count > 0.0 ? std::sqrt(squares / count) : 0.0;
+  }
+  return out;
+}
+
 /// RMS departure of a state that the channels show from where they show it first, over the samples of the fit.
 double departure_from_start(const ReconstructedStates& states, const Signals& signals, Eigen::Index first, Eigen::Index state) {
   double squares = 0.0, count = 0.0;
@@ -105,6 +122,7 @@ FilterData filter_data(const FilterModel& model, const Signals& signals, double 
     }
   }
   out.steps = model.steps;
+  out.input_departures = departures_of_inputs(out);
   out.start = states.x.row(shown_at).transpose();
   out.covariance = Eigen::MatrixXd::Zero(model.model.states(), model.model.states());
   for (std::size_t i = 0; i < specs.size(); ++i) {

@@ -65,6 +65,9 @@ struct FilterData {
   Eigen::MatrixXd covariance;
   std::vector<double> steps = {};                        ///< FilterModel::steps
   std::shared_ptr<const ReconstructedStates> read = {};  ///< the system's states as the channels show them
+  /// How far each input departs from its first value, RMS over what is not held out [its unit]: sigma of what it was before
+  /// (unknown_past.h).
+  std::vector<double> input_departures = {};
 };
 /// Planned along the states that the channels show, to `integration` (IntegrationPlan::tolerance), or as `plan` says.
 [[nodiscard]] FilterData filter_data(const FilterModel& model, const Signals& signals, double integration = kSearchTolerance,

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "misfit/fit/filter/filter_run.h"
@@ -11,9 +10,6 @@
 #include "misfit/model/memory.h"
 
 namespace misfit {
-
-/// How far an input departs from its first value, RMS over what is not held out [its unit]; 0: it does not.
-[[nodiscard]] std::vector<double> departures_of_inputs(const FilterData& data);
 
 /// What inputs were before the recording began, where effects read that (Reads::late()): nobody knows. A deviation c from its first value
 /// for each input, constant in time, a priori 0 with the RMS departure of the input from there as sigma. It is estimated beside the state,
@@ -29,9 +25,8 @@ class UnknownPast {
     const auto& effects = model.model.effects;
     const bool late = std::any_of(effects.begin(), effects.end(), [](const BoundEffect& e) { return reads_the_past(e.effect->spec()); });
     if (!late) return;
-    const std::vector<double> departures = departures_of_inputs(data);
-    for (std::size_t i = 0; i < departures.size(); ++i) {
-      if (departures[i] > 0.0) inputs_.push_back({static_cast<int>(i), departures[i]});
+    for (std::size_t i = 0; i < data.input_departures.size(); ++i) {
+      if (data.input_departures[i] > 0.0) inputs_.push_back({static_cast<int>(i), data.input_departures[i]});
     }
     const Eigen::Index count = std::ssize(inputs_);
     X_.setZero(states, count);
