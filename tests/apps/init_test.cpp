@@ -87,8 +87,7 @@ TEST(Init, TheOnlyCurrentBesideAPositionDrivesIt) {
 }
 
 /// Day and night move the room by little beside what a heater does to the tank in it.
-TEST(Init, ATemperatureThatNothingHelpsToPredictIsThatOfTheSurroundings) {
-  const TemporaryFolder folder;
+std::string tank() {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<int> level(0, 3);
@@ -102,10 +101,35 @@ TEST(Init, ATemperatureThatNothingHelpsToPredictIsThatOfTheSurroundings) {
     rows += row;
     for (int k = 0; k < 60; ++k) water += (power - 9.0 * (water - room)) / 250e3;
   }
-  folder.write("tank.csv", rows);
+  return rows;
+}
+
+TEST(Init, ATemperatureThatNothingHelpsToPredictIsThatOfTheSurroundings) {
+  const TemporaryFolder folder;
+  folder.write("tank.csv", tank());
   const Outcome outcome = run({"init", (folder.path() / "tank.csv").string(), "--out", (folder.path() / "tank").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expect_parts(outcome.out, {"input room", "output water", "nothing else in the file helps to predict it"});
+}
+
+/// Counted from 0 K, where no room was, the level without input would be uncertain by a hundred kelvin; the tank has none: it takes the
+/// room's temperature.
+TEST(Init, CountsLevelsFromTheZeroOfWhatWasRecorded) {
+  const TemporaryFolder folder;
+  folder.write("tank.csv", tank());
+  const std::string out = (folder.path() / "tank").string();
+  ASSERT_EQ(run({"init", (folder.path() / "tank.csv").string(), "--out", out}).status, 0);
+  const std::string model = content(fs::path(out) / "model.toml");
+  EXPECT_THAT(model, HasSubstr("zero_degC = { unit = \"K\", value = 273.15"));
+  EXPECT_THAT(model,
+              HasSubstr("(zero_degC + water_rest + water_gain_heater*heater + water_gain_room*(room - zero_degC) - water)/water_tau"));
+  const Outcome fitted = run({"fit", out});
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  const json parameters = json::parse(content(fs::path(out) / "out" / "fit" / "filter_error" / "fit.json")).at("parameters");
+  const double rest = parameters.at("water_rest").at("value"), sigma = parameters.at("water_rest").at("sigma");
+  EXPECT_LT(sigma, 3.0) << "of a room between 19 and 23 degC";
+  EXPECT_NEAR(rest, 0.0, 3.0 * sigma);
+  EXPECT_NEAR(parameters.at("water_gain_heater").at("value"), 1.0 / 9.0, 0.002) << "K/W";
 }
 
 /// A recording of others (configs/two_heaters): the heater's warmth comes late, so that a few seconds ahead the past slope says it all,

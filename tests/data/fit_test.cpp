@@ -94,6 +94,22 @@ TEST(Fit, ADoubtIsAWarningToo) {
   EXPECT_EQ(read_fit(folder.path()).doubts, std::vector<std::string>{"tau ends at its bound, 0.01 s"});
 }
 
+TEST(Fit, WhatIsPredictedFarAheadIsKeptWhereThereIsSomething) {
+  const TemporaryFolder folder;
+  Fit fit = example();
+  fit.predictions = {{"test", "a", "m", {0.0, 0.1}, {1.0, 2.0}, {1.1, 2.1}, {0.1, 0.1}, {false, true}}};
+  fit.predictions.push_back(fit.predictions.front());
+  fit.predictions.back().channel = "b";
+  fit.predictions.back().ahead = {nan, 2.5};
+  write_fit(folder.path(), fit);
+  const Fit read = read_fit(folder.path());
+  ASSERT_EQ(read.predictions.size(), 2U);
+  EXPECT_TRUE(read.predictions[0].ahead.empty());
+  ASSERT_EQ(read.predictions[1].ahead.size(), 2U);
+  EXPECT_TRUE(std::isnan(read.predictions[1].ahead[0]));
+  EXPECT_EQ(read.predictions[1].ahead[1], 2.5);
+}
+
 TEST(Fit, CurvesStandInOneFileInDegrees) {
   const TemporaryFolder folder;
   write_fit(folder.path(), example());

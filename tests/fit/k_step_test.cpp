@@ -60,6 +60,28 @@ TEST(KStep, WhereManyDivergeNoErrorIsGiven) {
   for (const auto& [channel, rms] : errors.rms) EXPECT_TRUE(std::isnan(rms.back())) << channel;
 }
 
+/// The series has the errors whose RMS k_step_errors gives, of every sample instead of every third.
+TEST(KStep, PredictionsFarAheadHaveTheErrorsOfTheLongestRuns) {
+  const Cart cart(303, 5, {effect("cubic_stiffness")});
+  const FilterEstimate estimate = estimate_of(cart);
+  const std::vector<std::vector<double>> ahead = predictions_far_ahead(estimate, 0);
+  const KStepErrors errors = k_step_errors(estimate);
+  const Signals& signals = *estimate.data[0].signals;
+  const auto& outputs = estimate.model.system->spec().outputs;
+  ASSERT_EQ(ahead.size(), outputs.size());
+  for (std::size_t o = 0; o < ahead.size(); ++o) {
+    ASSERT_EQ(ahead[o].size(), signals.samples());
+    for (std::size_t k = 0; k < ahead[o].size(); ++k) EXPECT_EQ(std::isfinite(ahead[o][k]), k >= std::size_t{kFarAhead}) << k;
+    double squares = 0.0, count = 0.0;
+    for (std::size_t k = kFarAhead; k < signals.samples(); k += 3) {
+      squares += std::pow(signals.measured[o].values[k] - ahead[o][k], 2);
+      count += 1.0;
+    }
+    const double rms = std::sqrt(squares / count);
+    EXPECT_NEAR(errors.rms.at(outputs[o].name).back(), rms, 1e-9 * rms) << outputs[o].name;
+  }
+}
+
 TEST(GrowthOfErrors, IsThatOfTheLongestPredictionsOverAllChannels) {
   const double nan = std::nan("");
   EXPECT_DOUBLE_EQ(growth_of_errors({{"x", {1.0, 2.0}}}, {{"x", {0.5, 3.0}}}), 1.5);

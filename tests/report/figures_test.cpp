@@ -191,6 +191,46 @@ TEST(Figures, TheTypicalIntervalAvoidsGaps) {
   EXPECT_EQ(all.to, 1.0);
 }
 
+/// Measured 0 throughout; predicted 32 samples ahead with the error `worst` in the middle fifth, and 1 elsewhere.
+Fit predicting_ahead(const std::string& name, double worst, const std::string& other = "") {
+  Fit fit;
+  fit.method = "filter_error";
+  for (const std::string& channel : {name, other}) {
+    if (channel.empty()) continue;
+    ChannelPrediction c{"flight", channel, "m", {}, {}, {}, {}, {}};
+    for (std::size_t k = 0; k < 2000; ++k) {
+      c.t.push_back(0.1 * static_cast<double>(k));
+      c.measured.push_back(0.0);
+      c.predicted.push_back(0.0);
+      c.sigma.push_back(1.0);
+      c.held_out.push_back(false);
+      c.ahead.push_back(k < 32 ? nan : channel == name && k >= 800 && k < 1200 ? worst : 1.0);
+    }
+    fit.predictions.push_back(std::move(c));
+  }
+  return fit;
+}
+
+TEST(Figures, WhatIsPredictedFarAheadIsShownWhereItsErrorsFallMost) {
+  const auto figure = change_ahead_figure(predicting_ahead("x", 5.0, "y"), predicting_ahead("x", 1.0, "y"), "lag");
+  ASSERT_TRUE(figure.has_value());
+  EXPECT_EQ(figure->panels.front().y_label, "x");
+  const Series* before = find(*figure, "before");
+  const Series* after = find(*figure, "after");
+  ASSERT_TRUE(before != nullptr && after != nullptr);
+  EXPECT_EQ(before->x.size(), 400U);
+  EXPECT_NEAR(before->x.front(), 80.0, 1e-9);
+  EXPECT_THAT(before->y, testing::Each(5.0));
+  EXPECT_THAT(after->y, testing::Each(1.0));
+  EXPECT_EQ(after->legend, "with lag");
+}
+
+TEST(Figures, ErrorsFarAheadThatHardlyFallAreNoPicture) {
+  EXPECT_FALSE(change_ahead_figure(predicting_ahead("x", 1.1), predicting_ahead("x", 1.0), "lag").has_value());
+  EXPECT_FALSE(change_ahead_figure(predicting_ahead("x", 1.0), predicting_ahead("x", 5.0), "lag").has_value()) << "they grow";
+  EXPECT_FALSE(change_ahead_figure(predicting_ahead("x", 5.0), predicting_ahead("z", 1.0), "lag").has_value()) << "another channel";
+}
+
 TEST(Figures, WhiteResidualsStayInTheBandAndAnAlternatingOneDoesNot) {
   ChannelPrediction c = channel(4000);
   const Figure white = autocorrelation_figure("output_error", c, 60);

@@ -57,6 +57,9 @@ enum class FitStatus { converged, not_converged, declined, failed };
 inline constexpr std::array<const char*, 4> fit_status_names = {"converged", "not_converged", "declined", "failed"};
 [[nodiscard]] std::string to_string(FitStatus status);
 
+/// [samples] A prediction so far ahead shows what acts slowly or comes late, which one of a single sample hardly does.
+inline constexpr int kFarAhead = 32;
+
 /// One channel of one experiment against the model.
 struct ChannelPrediction {
   std::string experiment, channel, unit;
@@ -65,6 +68,7 @@ struct ChannelPrediction {
   /// Of the residuals that enter the fit: RMS [SI], and that over the standard deviation of the same measurements, missing where these do
   /// not vary.
   std::optional<double> rms = {}, nrmse = {};
+  std::vector<double> ahead = {};  ///< of filter_error: predicted kFarAhead samples ahead; NaN: not there
 };
 
 /// "1.1 % of the motion", two digits.

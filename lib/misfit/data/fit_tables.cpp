@@ -55,6 +55,8 @@ CurveEstimate& curve_named(std::vector<CurveEstimate>& curves, const CurveFile& 
   throw InputError(where, "curve '" + name + "' is not one of fit.json" + suggest(name, valid));
 }
 
+constexpr const char* ahead_column = "_ahead";
+
 bool same_times(const ChannelPrediction& a, const ChannelPrediction& b) { return a.t == b.t && a.held_out == b.held_out; }
 
 }  // namespace
@@ -148,6 +150,7 @@ void write_predictions(const std::filesystem::path& path, const std::vector<Chan
     table.add(channel.channel + "_measured", unit, display_levels(channel.measured, channel.unit));
     table.add(channel.channel + "_predicted", unit, display_levels(channel.predicted, channel.unit));
     table.add(channel.channel + "_sigma", display_unit(channel.unit), display_values(channel.sigma, channel.unit));
+    if (!channel.ahead.empty()) table.add(channel.channel + ahead_column, unit, display_levels(channel.ahead, channel.unit));
   }
   table.add("held_out", "", std::vector<double>(first.held_out.begin(), first.held_out.end()));
   write_csv(path, table);
@@ -162,6 +165,7 @@ void read_predictions(const std::filesystem::path& path, std::vector<ChannelPred
     channel.measured = table.values(channel.channel + "_measured", channel.unit);
     channel.predicted = table.values(channel.channel + "_predicted", channel.unit);
     channel.sigma = table.values(channel.channel + "_sigma", channel.unit);
+    if (table.find(channel.channel + ahead_column) != nullptr) channel.ahead = table.values(channel.channel + ahead_column, channel.unit);
     channel.held_out.assign(held_out.size(), false);
     std::transform(held_out.begin(), held_out.end(), channel.held_out.begin(), [](double flag) { return flag > 0.5; });
   }

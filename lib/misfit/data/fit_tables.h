@@ -34,11 +34,12 @@ struct PredictionFile {
 /// prediction.csv for the first experiment, prediction_EXPERIMENT.csv for each other.
 [[nodiscard]] std::vector<PredictionFile> prediction_files(const std::vector<ChannelPrediction>& predictions);
 
-/// `t[s]`, then NAME_measured, NAME_predicted, NAME_sigma per channel with units (angles in degrees), then held_out (0 or 1).
+/// `t[s]`, then NAME_measured, NAME_predicted, NAME_sigma and, where there is one, NAME_ahead (predicted kFarAhead samples ahead) per
+/// channel with units (angles in degrees), then held_out (0 or 1).
 /// RunError if the channels of one experiment are not on one time base.
 void write_predictions(const std::filesystem::path& path, const std::vector<ChannelPrediction>& predictions, const PredictionFile& file);
 
-/// Fills t, measured, predicted, sigma and held_out of the channels of `file`.
+/// Fills t, measured, predicted, sigma, ahead and held_out of the channels of `file`.
 void read_predictions(const std::filesystem::path& path, std::vector<ChannelPrediction>& predictions, const PredictionFile& file);
 
 }  // namespace misfit

@@ -46,7 +46,7 @@ struct Rung {
   std::string note;                               ///< in words
 };
 /// Steps of Rung::k_step.
-inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, 32};
+inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, kFarAhead};
 
 struct Ladder {
   std::vector<Rung> rungs;

@@ -78,9 +78,9 @@ std::string state_of(const EmbeddedPage& page) {
   std::vector<std::string> warnings;
   for (const std::string& warning : page.warnings) warnings.push_back(json_string(warning));
   return fmt::format(
-      R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"verdict":{},"effects":[],"settable":null,"films":[],"camera":{},)"
+      R"({{"version":"","study":{{"name":{},"question":{},"fault":null}},"models":{},"outdated":{},"mostSamples":{},"verdict":{},"effects":[],"settable":null,"films":[],"camera":{},)"
       R"("job":{{"state":"none","number":0}}}})",
-      json_string(page.study), json_words(page.question), models_view(page.places), json_list(warnings),
+      json_string(page.study), json_words(page.question), models_view(page.places), json_list(warnings), page.places.front().most_samples,
       page.verdict != nullptr ? verdict_view(*page.verdict) : "null", calibration_of(page.places.front()).has_value());
 }
 
@@ -187,10 +187,6 @@ std::size_t longest_recording(const EmbeddedPage& page) {
 
 EmbeddedPage thinned(EmbeddedPage page, std::size_t most_samples) {
   for (Place& place : page.places) place.most_samples = most_samples;
-  page.warnings.push_back(
-      fmt::format("Recordings of more than {} samples are shown in this file with their least and largest values only: `misfit open` shows "
-                  "every sample.",
-                  most_samples));
   return page;
 }
 

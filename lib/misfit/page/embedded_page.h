@@ -21,7 +21,7 @@ struct EmbeddedPage {
 /// The answers that the server would give, as JSON: {"lists": [[…], …], "answers": {"where?model=0": …}}. Long lists of numbers, which many
 /// answers share, stand once: in an answer {"$": k} stands for the list k. They are put in while all stay below `most` bytes, those of the
 /// last model, which the page shows first, before those of earlier ones, and those of the first view of a model before its others. Where
-/// they are too many, recordings are thinned (thinned.h), and a warning of the page says so. Empty if not even the motion and the missing
+/// they are too many, recordings are thinned (thinned.h), and the page says so. Empty if not even the motion and the missing
 /// force of the last model find room.
 [[nodiscard]] std::string embedded_answers(const EmbeddedPage& page, std::size_t most);
 

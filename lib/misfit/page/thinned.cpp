@@ -27,6 +27,7 @@ void thin(ChannelPrediction& c, std::size_t most) {
   keep(places, c.predicted);
   keep(places, c.sigma);
   keep(places, c.held_out);
+  if (!c.ahead.empty()) keep(places, c.ahead);
 }
 
 std::vector<const Values*> pointers(const std::vector<Values>& lists) {

@@ -14,6 +14,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/units.h"
 #include "misfit/data/curve_coefficient.h"
+#include "misfit/data/estimators.h"
 #include "misfit/page/held_out.h"
 #include "misfit/page/json_text.h"
 #include "misfit/report/figures.h"
@@ -85,7 +86,7 @@ std::string pair_of(const PairMap& map, const Diagnosis* below) {
                      before != nullptr ? json_of(report::pair_figure(*before)) : "null");
 }
 
-std::string json_of(const Times& times) {
+std::string times_json(const Times& times) {
   return list_of(times, [](const auto& part) { return fmt::format("[{},{}]", json_number(part[0]), json_number(part[1])); });
 }
 
@@ -167,6 +168,20 @@ void add_curve_below(int model, const std::string& colour, const std::vector<Fit
   panel.series.push_back(std::move(series));
 }
 
+/// What is predicted far ahead by the model below and by this one, where the maps of that one show nothing; "null": they do, or there is
+/// none.
+std::string change_ahead(const Diagnosis* below, const Place& place, const Place* before) {
+  if (below == nullptr || !report::maps_show_nothing(*below)) return "null";
+  const auto whole_fit = [](Place of) {
+    of.most_samples = 0;
+    return fit_of(of, random_force_estimator().name);
+  };
+  const std::optional<Fit> without = whole_fit(*before), with = whole_fit(place);
+  if (!without || !with) return "null";
+  const auto figure = report::change_ahead_figure(*without, *with, place.added);
+  return figure ? json_of(*figure) : "null";
+}
+
 }  // namespace
 
 std::string motion_view(const Place& place, const std::string& method) {
@@ -183,7 +198,7 @@ std::string motion_view(const Place& place, const std::string& method) {
   std::vector<std::string> channels;
   for (const ChannelPrediction& c : fit->predictions) {
     channels.push_back(fmt::format(R"({{"experiment":{},"name":{},"channel":{},"heldOut":{},"figure":{}}})", json_string(c.experiment),
-                                   json_string(c.channel), json_words(c.channel), json_of(held_out_times(c)),
+                                   json_string(c.channel), json_words(c.channel), times_json(held_out_times(c)),
                                    json_of(report::motion_figure(fit->method, c, std::nullopt))));
   }
   return fmt::format(R"({{"methods":{},"method":{},"channels":{},"blocks":{}}})", list_of(methods, json_string), asked - methods.begin(),
@@ -198,9 +213,10 @@ std::string where_view(const Place& place, const Place* before) {
   const BesideMaps beside{&*d, below ? &*below : nullptr, place.added, fit ? held_out_times(*fit) : std::map<std::string, Times>{}};
   const auto map = [&](const ForceMap& m) { return map_of(m, beside); };
   const auto pair = [&](const PairMap& m) { return pair_of(m, beside.below); };
-  return fmt::format(R"({{"blocks":{},"force":{},"maps":{},"pairs":{},"whiteness":[{},{}]}})", json_of(blocks_of(*d)),
-                     list_of(d->missing, force_of), list_of(d->maps, map), list_of(d->pairs, pair),
-                     json_of(report::innovation_figure(d->whiteness)), json_of(report::periodogram_figure(d->whiteness)));
+  return fmt::format(R"({{"blocks":{},"ahead":{},"force":{},"maps":{},"pairs":{},"whiteness":[{},{}]}})", json_of(blocks_of(*d)),
+                     change_ahead(beside.below, place, before), list_of(d->missing, force_of), list_of(d->maps, map),
+                     list_of(d->pairs, pair), json_of(report::innovation_figure(d->whiteness)),
+                     json_of(report::periodogram_figure(d->whiteness)));
 }
 
 std::string samples_view(const Diagnosis& diagnosis, std::size_t experiment, std::size_t quantity) {

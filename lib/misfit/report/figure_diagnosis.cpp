@@ -119,6 +119,11 @@ Figure map_figure(const ForceMap& map) {
   return figure;
 }
 
+bool maps_show_nothing(const Diagnosis& diagnosis) {
+  constexpr double significant = 0.01;
+  return diagnosis.maps.empty() || !(diagnosis.maps.front().p_corrected < significant);
+}
+
 Figure map_change_figure(const ForceMap& before, const ForceMap& after, const std::string& added) {
   Figure figure = figure_of_map(before);
   figure.name = "missing_force_before_and_after";

@@ -14,6 +14,9 @@ namespace misfit::report {
 /// first rung that has the channel; the trim with its 95 % interval.
 [[nodiscard]] Figure ladder_figure(const Ladder& ladder);
 
+/// No map over one quantity is significant: of what acts late, or has a memory, a map shows nothing.
+[[nodiscard]] bool maps_show_nothing(const Diagnosis& diagnosis);
+
 /// Amplitude of the missing force ± 1 sigma over the places of one quantity; below, how many samples each place has.
 [[nodiscard]] Figure map_figure(const ForceMap& map);
 /// A map of the study's own model and the same with `added` in it, on one pair of axes.

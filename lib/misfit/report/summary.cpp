@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "misfit/core/display.h"
+#include "misfit/data/estimators.h"
 #include "misfit/report/figures_discovery.h"
 #include "misfit/report/sections.h"
 #include "misfit/show/results.h"
@@ -52,6 +53,13 @@ const Fit* leading_fit(const ReportInput& input) {
   return last;
 }
 
+/// nullptr: none is usable.
+const Fit* random_force_fit(const std::vector<Fit>& fits) {
+  const auto found =
+      std::find_if(fits.begin(), fits.end(), [](const Fit& fit) { return fit.usable() && fit.method == random_force_estimator().name; });
+  return found == fits.end() ? nullptr : &*found;
+}
+
 /// Of the last model, where the verdict is that something of unknown form is missing and comes in pulses; nullptr: it is another.
 const MissingForce* missing_in_pulses(const ReportInput& input) {
   const std::optional<Diagnosis>& last = input.rung ? input.rung->diagnosis : input.diagnosis;
@@ -62,14 +70,28 @@ const MissingForce* missing_in_pulses(const ReportInput& input) {
   return found == last->missing.end() ? nullptr : &*found;
 }
 
-/// The picture in which one sees the verdict: the pulses of the missing force over time, the missing force before and after, or where it is
-/// missing, or the camera's residuals, or the motion that the model follows or does not.
+/// What is predicted far ahead, before and with what was added: of what acts late, or has a memory, a map of the missing force shows
+/// nothing.
+std::optional<Figure> picture_of_change_ahead(const ReportInput& input) {
+  if (!input.last_model) return std::nullopt;
+  const Fit* before = random_force_fit(input.fits);
+  const Fit* after = random_force_fit(input.last_model->fits);
+  if (before == nullptr || after == nullptr) return std::nullopt;
+  return change_ahead_figure(*before, *after, input.last_model->added);
+}
+
+/// The picture in which one sees the verdict: the pulses of the missing force over time, the missing force before and after where it was
+/// significant, else what is predicted far ahead before and after, or where a force is missing, or the camera's residuals, or the motion
+/// that the model follows or does not.
 std::optional<Figure> picture_of(const ReportInput& input) {
   const Verdict& verdict = *input.verdict;
   if (verdict.kind == VerdictKind::calibration && input.calibration && !input.calibration->residuals.empty())
     return calibration_residual_figure(*input.calibration);
   if (const MissingForce* pulses = missing_in_pulses(input)) return missing_force_figure(*pulses, std::nullopt);
   const bool maps = input.diagnosis && !input.diagnosis->maps.empty();
+  if (!input.diagnosis || maps_show_nothing(*input.diagnosis)) {
+    if (auto ahead = picture_of_change_ahead(input)) return ahead;
+  }
   if (maps && input.rung && input.rung->diagnosis) {
     const ForceMap& before = input.diagnosis->maps.front();
     if (const ForceMap* after = find_map(*input.rung->diagnosis, before.port, before.quantity))

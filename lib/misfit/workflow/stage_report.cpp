@@ -7,6 +7,7 @@
 
 #include "misfit/compare/compare.h"
 #include "misfit/core/files.h"
+#include "misfit/core/shell_word.h"
 #include "misfit/core/version.h"
 #include "misfit/jobs/interrupt.h"
 #include "misfit/page/embedded_page.h"
@@ -80,7 +81,13 @@ void note_left_out(const Session& session, const Findings& own, const std::optio
   const bool searched = outdated.discovery && (!of_rung || above->rung == input.ladder->rungs.back().id);
   const bool in_verdict = (of_rung || !effects_added) && !searched;
   if (in_verdict || outdated.left_out.empty()) return;
-  input.notes.push_back(as_sentence(outdated.left_out) + " " + command_for_all(session) + " makes everything anew.");
+  const std::string all = command_for_all(session) + " make";
+  // A search goes on from the last rung: those below it are asked again only once they are the last.
+  const std::string first =
+      effects_added && !of_rung
+          ? misfit_command("remove", session.options.study, std::to_string(input.ladder->rungs[1].id), session.options.out) + " and " + all
+          : all + "s";
+  input.notes.push_back(as_sentence(outdated.left_out) + " " + first + " everything anew.");
 }
 
 /// What diagnose and discover found of the study's own model and of the last rung that was asked.

@@ -14,6 +14,7 @@
 #include "misfit/core/watch.h"
 #include "misfit/data/estimators.h"
 #include "misfit/data/ladder.h"
+#include "misfit/fit/filter/k_step.h"
 #include "misfit/fit/filter/noise_report.h"
 #include "misfit/fit/filter/settled.h"
 #include "misfit/fit/filter/slow_force.h"
@@ -96,12 +97,16 @@ OfChannel predict_channel(const OneStepPredictions& predictions, std::size_t o, 
 void add_predictions(const FilterEstimate& estimate, Fit& fit) {
   const auto& outputs = estimate.model.system->spec().outputs;
   std::vector<OneStepPredictions> predictions;
-  for (std::size_t e = 0; e < estimate.data.size(); ++e)
+  std::vector<std::vector<std::vector<double>>> ahead;
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) {
     predictions.push_back({estimate.data[e], estimate.traces[e], {estimate.traces[e], estimate.data[e]}});
+    ahead.push_back(predictions_far_ahead(estimate, e));
+  }
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     ChannelErrors errors;
-    for (const OneStepPredictions& of_experiment : predictions) {
-      OfChannel channel = predict_channel(of_experiment, o, outputs[o], errors);
+    for (std::size_t e = 0; e < predictions.size(); ++e) {
+      OfChannel channel = predict_channel(predictions[e], o, outputs[o], errors);
+      channel.prediction.ahead = std::move(ahead[e][o]);
       channel.residuals.describe(channel.prediction, fit);
       fit.predictions.push_back(std::move(channel.prediction));
     }

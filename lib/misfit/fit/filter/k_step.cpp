@@ -30,45 +30,37 @@ struct Errors {
   }
 };
 
-/// Free runs of one experiment: from the filtered state of every third sample (neighbours say the same) as far as the longest length,
-/// where that state is settled (settled.h).
+/// Free runs of one experiment: from the filtered states as far as the longest length, where that state is settled (settled.h).
 class FreeRuns {
  public:
-  FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace, Errors& errors)
-      : stepper_(stepper), data_(data), trace_(trace), predictions_(trace, data), signals_(*data.signals), errors_(errors) {}
+  FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace)
+      : stepper_(stepper), data_(data), trace_(trace), predictions_(trace, data), signals_(*data.signals) {}
 
-  void run() {
-    constexpr std::size_t stride = 3;
-    prepare_at({stepper_, signals_, data_.inputs}, data_.first, data_.start.data());
+  /// From every `stride`-th sample. `visit(length, k, y)`: the outputs at sample k, kLadderSteps[length] after the start, as the run has
+  /// them; nullptr: it has diverged, or nothing can be read from its state.
+  template <class Visit>
+  void run(std::size_t stride, Visit&& visit) {
+    prepare_at(along(), data_.first, data_.start.data());
     for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride) {
-      if (predictions_.all_settled(k + 1)) run_from(k);
+      if (predictions_.all_settled(k + 1)) run_from(k, visit);
     }
   }
 
  private:
-  void run_from(std::size_t k) {
+  [[nodiscard]] auto along() { return Simulation{stepper_, signals_, data_.inputs}; }
+
+  template <class Visit>
+  void run_from(std::size_t k, Visit& visit) {
     Eigen::VectorXd x = trace_.filtered(k);
+    std::array<double, kMaxSensorPorts> y{};
     std::size_t next = 0;
     bool finite = true;
     for (std::size_t j = 1; next < lengths && k + j < signals_.samples(); ++j) {
-      finite = finite && stepper_.step(x.data(), interval_after({stepper_, signals_, data_.inputs}, k + j - 1));
+      finite = finite && stepper_.step(x.data(), interval_after(along(), k + j - 1));
       if (static_cast<int>(j) != kLadderSteps[next]) continue;
-      finite = finite && compare(x.data(), k + j, next);
-      ++errors_.runs[next];
-      errors_.diverged[next++] += finite ? 0U : 1U;
+      finite = finite && predict_at(along(), k + j, x.data(), y.data());
+      visit(next++, k + j, finite ? y.data() : nullptr);
     }
-  }
-
-  /// False: nothing can be read from the state.
-  bool compare(const double* x, std::size_t k, std::size_t length) {
-    std::array<double, kMaxSensorPorts> y{};
-    if (!predict_at({stepper_, signals_, data_.inputs}, k, x, y.data())) return false;
-    for (std::size_t o = 0; o < errors_.squares.size(); ++o) {
-      if (!errors_.has(data_.use[k * errors_.squares.size() + o])) continue;
-      errors_.squares[o][length] += std::pow(signals_.measured[o].values[k] - y[o], 2);
-      errors_.counts[o][length] += 1.0;
-    }
-    return true;
   }
 
   Stepper& stepper_;
@@ -76,8 +68,21 @@ class FreeRuns {
   const FilterTrace& trace_;
   SettledPredictions predictions_;
   const Signals& signals_;
-  Errors& errors_;
 };
+
+void add_errors(const FilterData& data, const FilterTrace& trace, Stepper& stepper, Errors& errors) {
+  constexpr std::size_t stride = 3;  // neighbours say the same
+  FreeRuns(stepper, data, trace).run(stride, [&](std::size_t length, std::size_t k, const double* y) {
+    ++errors.runs[length];
+    errors.diverged[length] += y != nullptr ? 0U : 1U;
+    if (y == nullptr) return;
+    for (std::size_t o = 0; o < errors.squares.size(); ++o) {
+      if (!errors.has(data.use[k * errors.squares.size() + o])) continue;
+      errors.squares[o][length] += std::pow(data.signals->measured[o].values[k] - y[o], 2);
+      errors.counts[o][length] += 1.0;
+    }
+  });
+}
 
 constexpr double most_lost = 0.03;  // share of the runs
 
@@ -104,7 +109,7 @@ KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compar
   const Model fixed = all_fixed(estimate.forced.model);
   Stepper stepper(fixed);
   Errors errors(outputs.size(), compared);
-  for (std::size_t e = 0; e < estimate.data.size(); ++e) FreeRuns(stepper, estimate.data[e], estimate.traces[e], errors).run();
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) add_errors(estimate.data[e], estimate.traces[e], stepper, errors);
   KStepErrors out;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     for (std::size_t l = 0; l < lengths; ++l) {
@@ -116,6 +121,21 @@ KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compar
   out.words = words_on(errors);
   out.runs = std::move(errors.runs);
   out.diverged = std::move(errors.diverged);
+  return out;
+}
+
+std::vector<std::vector<double>> predictions_far_ahead(const FilterEstimate& estimate, std::size_t experiment) {
+  constexpr std::size_t most_runs = 4000;
+  const FilterData& data = estimate.data[experiment];
+  const Model fixed = all_fixed(estimate.forced.model);
+  Stepper stepper(fixed);
+  const std::size_t samples = data.signals->samples();
+  std::vector<std::vector<double>> out(data.signals->measured.size(), std::vector<double>(samples, std::nan("")));
+  FreeRuns(stepper, data, estimate.traces[experiment])
+      .run(1 + samples / most_runs, [&](std::size_t length, std::size_t k, const double* y) {
+        if (length + 1 < lengths || y == nullptr) return;
+        for (std::size_t o = 0; o < out.size(); ++o) out[o][k] = y[o];
+      });
   return out;
 }
 

@@ -24,6 +24,11 @@ enum class ComparedSamples : std::uint8_t { counted, held_out, both };
 /// how good the good ones are: no RMS is given.
 [[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compared = ComparedSamples::counted);
 
+/// Predictions of one experiment kFarAhead samples ahead, [output][sample] in SI: the filtered state run on without further measurements.
+/// NaN: none reaches there (at the beginning, behind gaps, where the run diverges, and between those of a recording of more than 4000
+/// samples, of which every second, third, … is predicted).
+[[nodiscard]] std::vector<std::vector<double>> predictions_far_ahead(const FilterEstimate& estimate, std::size_t experiment);
+
 /// How the errors of the longest predictions that both models have changed: RMS over the channels of (after/before). Infinite where those
 /// after diverge and those before do not; 1 where nothing can be compared.
 [[nodiscard]] double growth_of_errors(const std::map<std::string, std::vector<double>>& before,

@@ -109,6 +109,9 @@ function showHead() {
     element('button', { onclick: () => correct() }, 'Correct it')));
   at('tabs').querySelector('[data-view=calibration]').hidden = !here.state.camera && here.tab !== 'calibration';
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
+  const most = here.state.mostSamples ?? 0; // of the report; 0: all
+  at('thinned').hidden = most === 0;
+  at('thinned').textContent = `Recordings of more than ${most} samples are drawn by their least and largest values; \`misfit open\` draws every sample.`;
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
   showVerdict(verdict?.blocks ?? []);
   at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
@@ -399,6 +402,7 @@ async function showWhere(view, where, current) {
   const buttons = all.map((map, k) => element('button', { 'aria-pressed': 'false', 'data-map': map.figure.name, onclick: () => show(k) }, words(spaced(map.portLabel)), ' against ',
     words(spaced(map.label ?? map.xLabel)), map.yLabel ? ' and ' : '', map.yLabel ? words(spaced(map.yLabel)) : '', ' ', element('small', {}, significance(map))));
   list.append(...buttons);
+  if (where.ahead) draw(view, where.ahead, { height: 0.8 });
   view.append(body, conclusions ? blocks([conclusions]) : '', all.length > 1 ? element('h3', {}, 'Missing force against…') : '', all.length > 1 ? list : '', below);
   const tests = element('div'), more = folded('Tests of the residuals', tests);
   more.addEventListener('toggle', () => {

@@ -53,7 +53,7 @@ StageInputs inputs_of_fit(const Session& session, const std::string& method, con
 std::shared_ptr<const FilterWork> filter_work(Session& session) {
   if (!session.filter) {
     const std::string method = random_force_estimator().name;
-    session.note("re-running " + method + " (needed by the next stage)");
+    session.note(method + " once more: the next stage needs more of it than the run folder keeps");
     session.filter = Methods(session).run(method).filter;
   }
   if (!session.filter->estimate)

@@ -124,6 +124,32 @@ struct Candidate {
   std::vector<double> values;  ///< SI
 };
 
+/// In a unit such as degC, whose 0 is not that of SI.
+bool has_offset(const ColumnSurvey& column) { return parse_unit(column.unit).offset != 0.0; }
+
+/// Of the first column in the model that is in such a unit.
+std::optional<UnitZero> unit_zero(const RecordingSurvey& survey, std::set<std::string>& taken) {
+  for (const ColumnUse use : {ColumnUse::output, ColumnUse::input}) {
+    for (const ColumnSurvey* c : survey.of_use(use)) {
+      if (has_offset(*c))
+        return UnitZero{unique_name("zero_" + plain_unit(c->unit), taken), plain_unit(c->unit), parse_unit(c->unit).offset};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Counts levels from the zero of such units.
+void count_from_zero(const RecordingSurvey& survey, const UnitZero& zero, GuessedOutput& output) {
+  for (GuessedGain& gain : output.gains) {
+    gain.from_zero = has_offset(column_called(survey, gain.of));
+    if (gain.from_zero) output.rest_value += gain.value * zero.value;
+  }
+  output.from_zero = !output.guess.integrates && has_offset(column_called(survey, output.name));
+  if (!output.from_zero) return;
+  output.rest_value -= zero.value;
+  output.rest_doc += ", above 0 " + zero.unit;
+}
+
 /// Other outputs as drivers of one: only where every output with all its terms has room in a system.
 bool may_couple(std::size_t outputs, std::size_t inputs) {
   const int n = static_cast<int>(outputs), terms = n + 2 + static_cast<int>(inputs);
@@ -137,6 +163,7 @@ void take_gains(const GuessedModel& model, const std::vector<Candidate>& others,
   std::string driven = output.unit;
   if (output.guess.integrates) driven = second ? rate_unit(rate_unit(output.unit)) : rate_unit(output.unit);
   output.rest_unit = driven;
+  output.rest_value = output.guess.rest;
   output.rest_doc = output.guess.integrates ? "rate of change without input"
                     : model.inputs.empty()  ? "equilibrium"
                                             : "output without input";
@@ -256,12 +283,15 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
   Room room;
   std::vector<std::string> left_out;
   std::vector<Candidate> outputs;
+  model.zero = unit_zero(survey, taken);
+  if (model.zero) --room.parameters;
   for (const ColumnSurvey* c : survey.of_use(ColumnUse::output)) outputs.push_back({c, longest->values(c->name, unit_in_si(c->unit))});
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const bool none_fits = room.states == 0 || room.outputs == 0;
     const std::vector<Candidate> drivers = drivers_of(i, outputs, model.inputs.size());
     GuessedOutput output = none_fits ? GuessedOutput{} : guess_output(survey, *longest, outputs[i], with_drivers(data, drivers));
     take_gains(model, drivers, output);
+    if (model.zero && !none_fits) count_from_zero(survey, *model.zero, output);
     if (none_fits || !room.take(output)) {
       left_out.push_back(outputs[i].column->name);
       continue;

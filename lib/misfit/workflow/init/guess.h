@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct GuessedGain {
   std::string name, of;  ///< the parameter; the input or output that drives
   std::string unit, doc;
   double value = 0.0;
+  bool from_zero = false;  ///< acts by what `of` is above GuessedModel::zero
 };
 
 /// An output with the linear model guessed for it.
@@ -22,6 +24,8 @@ struct GuessedOutput {
   std::string rate_state;                     ///< order 2: the state that is its rate
   std::string stiffness, damping, tau, rest;  ///< parameters of its equation
   std::string rest_unit, rest_doc;
+  double rest_value = 0.0;
+  bool from_zero = false;                ///< rest is above GuessedModel::zero
   std::vector<GuessedGain> gains;        ///< of what drives it
   double noise = 0.0, rate_noise = 0.0;  ///< measurement noise [unit]
   bool size_alone = false;               ///< measured without its sign, as it seems (with_signs()); the guess is of it with signs
@@ -34,10 +38,18 @@ struct MostGuessed {
 };
 inline constexpr MostGuessed most_guessed;
 
+/// The zero of a unit such as degC, as a parameter of the model: levels are counted from there. Counted from 0 K, where no recording was,
+/// "the output without input" would be an extrapolation of hundreds of kelvin.
+struct UnitZero {
+  std::string name, unit;
+  double value = 0.0;  ///< [K]
+};
+
 struct GuessedModel {
   std::vector<std::string> inputs, input_units;  ///< SI
   std::vector<std::string> holds, hold_reasons;
   std::vector<GuessedOutput> outputs;
+  std::optional<UnitZero> zero;      ///< where a column is in a unit with an offset
   std::vector<std::string> remarks;  ///< which columns are not in it, and why: one sentence each
 };
 

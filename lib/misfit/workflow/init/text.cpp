@@ -38,9 +38,12 @@ std::string line_of(const WrittenParameter& p) {
                      p.positive ? ", " + positive_bounds(p.value) : "", toml_string(p.doc));
 }
 
-std::string driven_by(const GuessedOutput& output) {
+std::string driven_by(const GuessedModel& model, const GuessedOutput& output) {
   std::string sum = output.rest;
-  for (const auto& gain : output.gains) sum += fmt::format(" + {}*{}", gain.name, gain.of);
+  if (output.from_zero) sum = model.zero->name + " + " + sum;
+  for (const auto& gain : output.gains)
+    sum +=
+        gain.from_zero ? fmt::format(" + {}*({} - {})", gain.name, gain.of, model.zero->name) : fmt::format(" + {}*{}", gain.name, gain.of);
   return sum;
 }
 
@@ -56,11 +59,11 @@ std::string parameters_of(const GuessedOutput& output) {
   }
   if (!output.tau.empty()) text += line_of({.name = output.tau, .unit = "s", .value = g.tau, .doc = "time constant", .positive = true});
   for (const auto& gain : output.gains) text += line_of({.name = gain.name, .unit = gain.unit, .value = gain.value, .doc = gain.doc});
-  return text + line_of({.name = output.rest, .unit = output.rest_unit, .value = g.rest, .doc = output.rest_doc});
+  return text + line_of({.name = output.rest, .unit = output.rest_unit, .value = output.rest_value, .doc = output.rest_doc});
 }
 
-std::string equations_of(const GuessedOutput& output) {
-  const std::string target = driven_by(output);
+std::string equations_of(const GuessedModel& model, const GuessedOutput& output) {
+  const std::string target = driven_by(model, output);
   const bool pulled = !output.guess.integrates;
   if (output.guess.order == 1) {
     if (!pulled) return fmt::format("{} = \"{}\"\n", output.name, target);
@@ -136,9 +139,12 @@ std::string model_text(const GuessedModel& model, const RecordingSurvey& survey)
                         model.holds[i], remark_on(column_called(survey, model.inputs[i])), model.hold_reasons[i]);
   }
   text += "\n[parameters]\n";
+  if (model.zero)
+    text += fmt::format("{} = {{ unit = \"K\", value = {:.6g}, doc = {} }}\n", model.zero->name, model.zero->value,
+                        toml_string("0 " + model.zero->unit + ": levels are counted from there"));
   for (const auto& o : model.outputs) text += parameters_of(o);
   text += "\n[equations]                # right-hand side: rate of change of the state\n";
-  for (const auto& o : model.outputs) text += equations_of(o);
+  for (const auto& o : model.outputs) text += equations_of(model, o);
   text += "\n[outputs]                  # the measured columns; noise: sigma of the white measurement noise, a start\n";
   for (const auto& o : model.outputs) {
     text += fmt::format("{} = {{ unit = {}, noise = {} }}   # {}\n", o.name, toml_string(o.unit), number(o.noise),
