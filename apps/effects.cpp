@@ -5,6 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "apps/help.h"
 #include "apps/verbs.h"
 #include "misfit/core/shell_word.h"
 #include "misfit/core/shown.h"
@@ -178,6 +179,10 @@ Chosen chosen(const Options& options, const Registry& registry) {
 }  // namespace
 
 int effects_verb(const Options& options, const Registry& registry) {
+  if (options.session.study.empty() && !options.json && !options.verbose) {
+    std::cout << help_text("effects", registry);
+    return 0;
+  }
   const Chosen known = chosen(options, registry);
   if (known.effects.empty() && !options.json) {
     const std::string study = shell_word(options.session.study);

@@ -63,7 +63,7 @@ std::string system_text() {
 }
 
 std::string effects_text(const Registry& registry) {
-  std::string out = "Effects of this program (misfit effects KEY prints one in full):\n\n";
+  std::string out = "Effects of this program (misfit effects KEY: one in full; misfit effects --verbose: all):\n\n";
   std::size_t width = 0;
   for (const std::string& key : registry.effect_keys()) width = std::max(width, key.size());
   for (const std::string& key : registry.effect_keys()) {

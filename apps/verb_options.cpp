@@ -236,6 +236,7 @@ void effects_options(CLI::App& verb, Options& options) {
   verb.add_option("what", options.session.study, "key of an effect, or a study: study.toml, or the folder that holds it")
       ->type_name("KEY|STUDY");
   verb.add_option("effect", options.effect, "effect of that study")->type_name("KEY");
+  add_verbose(verb, options, "print all that is known of each effect instead of its formula");
   verb.add_flag("--json", options.json, "print the effects as JSON");
 }
 

@@ -85,12 +85,13 @@ TEST(Effects, EveryOneHasFormulaSourceAndUnits) {
   const Outcome outcome = run({"effects", "--json"});
   ASSERT_EQ(outcome.status, 0);
   const json all = json::parse(outcome.out);
-  const Outcome text = run({"effects"});
+  const Outcome text = run({"effects", "--verbose"}), list = run({"effects"});
   std::set<std::string> names;
   for (const auto& effect : all) {
     const std::string name = effect.at("effect");
     names.insert(name);
     EXPECT_NE(("\n" + text.out).find("\n" + name + "\n"), std::string::npos) << name;
+    EXPECT_NE(list.out.find("\n  " + name + " "), std::string::npos) << name;
     for (const char* key : {"formula", "symbols", "valid", "size", "source"})
       EXPECT_FALSE(effect.at(key).get<std::string>().empty()) << name;
     EXPECT_NE(effect.at("ports").get<std::string>().find('['), std::string::npos) << name;

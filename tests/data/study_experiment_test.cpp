@@ -11,8 +11,10 @@ using Experiments = StudyFolder;
 TEST_F(Experiments, AnExperimentHasOneSourceAndAnOwnName) {
   expect_parts(error_with("[[experiment]]\nname = \"a\"\n"), {"study.toml:3", "exactly one of track, video and data", "0 are given"});
   expect_parts(error_with("[[experiment]]\nname = \"a\"\ndta = \"a.csv\"\n"),
-               {"study.toml:5", "dta", "unknown key 'dta'", "did you mean 'data'"});
+               {"study.toml:5", "dta", "unknown key 'dta' in [[experiment]]", "did you mean 'data'"});
   expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\ndata = \"other.csv\"\n"), {"2 are given"});
+  expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\n[[experiment]]\ndata = \"other.csv\"\ncolums = {}\n"),
+               {"study.toml:7", "unknown key 'colums' in [[experiment]] (number 2)", "did you mean 'columns'"});
   expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\n[[experiment]]\ndata = \"track.csv\"\n"),
                {"two experiments are called 'track'", "line 3"});
   expect_parts(error_with("[[experiment]]\ntrack = \"track.csv\"\nname = \"../a\"\n"), {"study.toml:5", "experiment[0].name"});

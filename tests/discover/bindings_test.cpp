@@ -34,6 +34,12 @@ TEST(Bindings, WhatSpillsGoesToEachOtherPort) {
               ElementsAre(Roles{}, Roles{{"level", "x1"}, {"to_port", "dx2/dt"}}, Roles{{"level", "x2"}, {"to_port", "dx1/dt"}}));
 }
 
+TEST(Bindings, WhatIsSpilledIsLostWhereItWas) {
+  EXPECT_THAT(bindings("overflow_between", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"level", "x1"}, {"port", "dx1/dt"}, {"to_port", "dx2/dt"}},
+                          Roles{{"level", "x2"}, {"port", "dx2/dt"}, {"to_port", "dx1/dt"}}));
+}
+
 TEST(Bindings, AMotionHasItsRateAndWhatThatIsTheRateOf) {
   EXPECT_THAT(bindings("quadratic_drag", "test_oscillator"), ElementsAre(Roles{}, Roles{{"port", "force"}, {"rate", "v"}}));
   EXPECT_THAT(bindings("cubic_stiffness", "test_oscillator"), ElementsAre(Roles{}, Roles{{"displacement", "x"}, {"port", "force"}}));

@@ -250,6 +250,7 @@ class Extension {
   bool add_tentatively(const Candidate& candidate, std::vector<Candidate> alternatives) {
     if (!can_be_added(candidate, std::move(alternatives))) return false;
     why_off_ = why_not_kept(ladder_.ladder().rungs.back());
+    if (why_off_.empty()) why_off_ = ladder_.why_free_run_is_worse();
     if (why_off_.empty()) return true;
     ladder_.root().note(fmt::format("{}: {}: its rung is taken off", effect_at(candidate.effect, candidate.roles), why_off_));
     take_off_last();

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -17,6 +19,21 @@ bool follows_the_motion(const Fit& fit) {
                                      [](const ChannelPrediction& p) { return !p.nrmse || *p.nrmse < most; });
 }
 
+bool asks_for_free_runs(const Session& session) {
+  const auto& methods = session.study.methods;
+  return std::find(methods.begin(), methods.end(), trajectory_estimator().name) != methods.end();
+}
+
+/// RMS over the channels of (after/before); 1 where nothing can be compared.
+double growth_of_rms(const std::map<std::string, Estimate>& before, const std::map<std::string, Estimate>& after) {
+  const auto alone = [](const std::map<std::string, Estimate>& errors) {
+    std::map<std::string, std::vector<double>> out;
+    for (const auto& [channel, error] : errors) out[channel] = {error.value};
+    return out;
+  };
+  return growth_of_errors(alone(before), alone(after));
+}
+
 }  // namespace
 
 double largest_growth(const Rung& before, const Rung& after) {
@@ -25,10 +42,28 @@ double largest_growth(const Rung& before, const Rung& after) {
   return std::max(fitted, growth_of_errors(*before.validation_k_step, *after.validation_k_step));
 }
 
+std::string ModelLadder::why_free_run_is_worse() {
+  if (ladder_.rungs.size() < 2 || !asks_for_free_runs(root_)) return "";
+  const std::string trajectory = trajectory_estimator().name;
+  const Rung& rung = ladder_.rungs.back();
+  const Rung& parent = *std::find_if(ladder_.rungs.begin(), ladder_.rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
+  std::unique_ptr<Session> below;
+  if (parent.parent >= 0) below = std::make_unique<Session>(options_for(options_, root_.folder.file(parent.study)), registry_);
+  const Fit before = fit_stage(below ? *below : root_, {trajectory}).front();
+  if (!follows_the_motion(before)) return "";
+  const Fit after = fit_stage(last(), {trajectory}).front();
+  if (!after.usable()) return "the free run, which followed the motion without it, no longer does: " + after.message;
+  constexpr double hardly = 1.03, hardly_held_out = 1.05;  // as of predictions (why_not_kept)
+  if (const double growth = growth_of_rms(before.rms, after.rms); growth > hardly)
+    return fmt::format("the errors of the free run grow by {:.0f} %", 100.0 * (growth - 1.0));
+  const double growth = growth_of_rms(before.validation_rms, after.validation_rms);
+  return growth > hardly_held_out ? fmt::format("of what is held out, the errors of the free run grow by {:.0f} %", 100.0 * (growth - 1.0))
+                                  : "";
+}
+
 void ModelLadder::compare_free_runs() {
   const std::string trajectory = trajectory_estimator().name;
-  const auto& methods = root_.study.methods;
-  if (ladder_.rungs.size() < 2 || std::find(methods.begin(), methods.end(), trajectory) == methods.end()) return;
+  if (ladder_.rungs.size() < 2 || !asks_for_free_runs(root_)) return;
   if (!std::filesystem::exists(root_.folder.file("fit/" + trajectory + "/fit.json"))) return;  // nobody has asked for it yet
   const Fit before = fit_stage(root_, {trajectory}).front();
   if (!follows_the_motion(before)) return;
