@@ -52,7 +52,7 @@ std::string ModelLadder::why_free_run_is_worse() {
   const Fit before = fit_stage(below ? *below : root_, {trajectory}).front();
   if (!follows_the_motion(before)) return "";
   const Fit after = fit_stage(last(), {trajectory}).front();
-  if (!after.usable()) return "the free run, which followed the motion without it, no longer does: " + after.message;
+  if (!after.usable()) return "the free run, which followed the motion without it, no longer does: " + after.message.substr(0, after.message.find(": "));
   constexpr double hardly = 1.03, hardly_held_out = 1.05;  // as of predictions (why_not_kept)
   if (const double growth = growth_of_rms(before.rms, after.rms); growth > hardly)
     return fmt::format("the errors of the free run grow by {:.0f} %", 100.0 * (growth - 1.0));
