@@ -18,7 +18,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
   out.resize(trace.samples * ny, !data.steps.empty());
   Kalman<M, NY> kalman(n, ny);
   start_covariance(model, data, noise, kalman);
-  UnknownPast<M, NY> past(model, data, n, ny);
+  UnknownPast past(model, data, n, ny);
   NoiseSteps steps(noise);
   typename Kalman<M, NY>::StateVector a = Kalman<M, NY>::StateVector::Zero(n), correction = a, shifted = a;
   typename Kalman<M, NY>::StateMatrix phi = Kalman<M, NY>::StateMatrix::Zero(n, n);
@@ -54,7 +54,7 @@ Innovations run_linear_as(const FilterModel& model, const FilterData& data, cons
     correction = kalman.x - trace.correction_at(k);
     past.recall(trace, k - data.first, shifted);
     kalman.predict(phi, steps.at(h), model);
-    past.predict(phi, steps.at(h), kalman);
+    past.predict(phi.data(), {.row = 1, .column = phi.outerStride()}, steps.at(h), kalman);
     kalman.x = phi.lazyProduct(correction) + shifted;
   }
   return out;

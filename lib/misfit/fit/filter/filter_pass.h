@@ -175,7 +175,7 @@ class FilterPass {
       std::copy_n(D_.data() + static_cast<std::size_t>(i) * kRowStride, n_, trace_.Phi.data() + (k * N_ + i) * N_);
     const NoiseStep& noise_step = steps_.at(interval.t1 - interval.t0);
     kalman_.predict(phi, noise_step, model_);
-    past_.predict(phi, noise_step, kalman_);
+    past_.predict(D_.data(), {.row = static_cast<Eigen::Index>(kRowStride), .column = 1}, noise_step, kalman_);
     if (options_.jacobian == nullptr) return true;
     sensitivities_.step(D_.data(), slots_, noise_step);
     if (past_.is_reached()) sensitivities_.add_past(past_.response());
@@ -193,7 +193,7 @@ class FilterPass {
   int n_, ny_;
   std::size_t N_;
   Kalman<M, NY> kalman_;
-  UnknownPast<M, NY> past_;
+  UnknownPast past_;
   NoiseSteps steps_;
   std::vector<double> D_;
   SampledOutputs outputs_;
