@@ -14,6 +14,8 @@
 namespace misfit {
 namespace {
 
+using testing::AllOf;
+using testing::HasSubstr;
 using testing::StartsWith;
 
 constexpr const char* model = R"toml([system]
@@ -48,8 +50,12 @@ std::string recording(const std::function<double(double, double)>& sensor) {
   return rows;
 }
 
-/// Of a ladder with one rung: why its free run is worse than that of the study's own model.
-std::string why_worse(const std::string& data, const std::string& effect, const std::string& methods) {
+/// Of a ladder with one rung: why its free run is worse, or better, than that of the study's own model.
+struct Judged {
+  std::string worse, better;
+};
+
+Judged judged(const std::string& data, const std::string& effect, const std::string& methods) {
   const TemporaryFolder folder;
   folder.write("m.toml", model);
   folder.write("d.csv", data);
@@ -61,23 +67,31 @@ std::string why_worse(const std::string& data, const std::string& effect, const 
   misfit_models_register(registry);
   ModelLadder ladder({.study = study.string(), .out = (folder.path() / "out").string()}, registry);
   EXPECT_EQ(ladder.why_free_run_is_worse(), "") << "nothing was added";
+  EXPECT_EQ(ladder.why_free_run_is_better(), "");
   ladder.add(effect, std::nullopt);
-  return ladder.why_free_run_is_worse();
+  return {ladder.why_free_run_is_worse(), ladder.why_free_run_is_better()};
 }
 
 double with_offset(double, double x) { return x + 0.3; }
 /// Its scale grows until 45 s, where the held-out part begins, and is then what it was at first.
 double fading_until_held_out(double t, double x) { return x * (t < 45.0 ? 1.0 + 0.02 * t : 1.0); }
 
-TEST(FreeRunOfARung, IsNotWorseWithWhatWasMissing) { EXPECT_EQ(why_worse(recording(with_offset), "bias", "\"output_error\""), ""); }
+TEST(FreeRunOfARung, IsBetterWithWhatWasMissing) {
+  const Judged bias = judged(recording(with_offset), "bias", "\"output_error\"");
+  EXPECT_EQ(bias.worse, "");
+  EXPECT_THAT(bias.better, AllOf(StartsWith("the errors of the free run fall by 9"), HasSubstr("of what is held out by 9")));
+}
 
 TEST(FreeRunOfARung, IsWorseWhereWhatIsHeldOutIsSimulatedWorse) {
-  EXPECT_THAT(why_worse(recording(fading_until_held_out), "sensor_fading", "\"output_error\""),
-              StartsWith("of what is held out, the errors of the free run grow by "));
+  const Judged fading = judged(recording(fading_until_held_out), "sensor_fading", "\"output_error\"");
+  EXPECT_THAT(fading.worse, StartsWith("of what is held out, the errors of the free run grow by "));
+  EXPECT_EQ(fading.better, "") << "though those of what is fitted fall";
 }
 
 TEST(FreeRunOfARung, IsAskedForByTheStudy) {
-  EXPECT_EQ(why_worse(recording(fading_until_held_out), "sensor_fading", "\"filter_error\""), "");
+  const Judged fading = judged(recording(fading_until_held_out), "sensor_fading", "\"filter_error\"");
+  EXPECT_EQ(fading.worse, "");
+  EXPECT_EQ(fading.better, "");
 }
 
 TEST(FreeRunOfARung, SaysNothingWhereTheModelBelowDoesNotFollowTheMotion) {
@@ -88,7 +102,9 @@ TEST(FreeRunOfARung, SaysNothingWhereTheModelBelowDoesNotFollowTheMotion) {
     push += 0.4 * noise(random) - 0.05 * push;
     return x + push;
   });
-  EXPECT_EQ(why_worse(driven, "sensor_fading", "\"output_error\""), "");
+  const Judged fading = judged(driven, "sensor_fading", "\"output_error\"");
+  EXPECT_EQ(fading.worse, "");
+  EXPECT_EQ(fading.better, "");
 }
 
 }  // namespace

@@ -48,11 +48,20 @@ class ModelLadder {
   /// follows the motion by it, why the last rung's free run is worse (it no longer follows, or its errors grow by more than 3 %, of what is
   /// held out 5 %); else empty.
   [[nodiscard]] std::string why_free_run_is_worse();
+  /// By how much the errors of that free run fall with the last rung; empty where they do not by a tenth, in what is fitted and in what is
+  /// held out: the held-out likelihood of a filter whose linearisation is poor (a level at a lid) says less than they do.
+  [[nodiscard]] std::string why_free_run_is_better();
 
   /// From now on a rung's fit has a time limit where nobody gives one (usual_limit()): nobody waits for it.
   void limit_fits() { limits_fits_ = true; }
 
  private:
+  /// By output_error, of the model below the last rung and of that.
+  struct FreeRuns {
+    Fit before, after;
+  };
+  /// nullopt: the study does not ask for them, or the model below does not follow the motion.
+  std::optional<FreeRuns> free_runs_of_last();
   [[nodiscard]] std::string relative_study(const Session& session) const;
   /// [s] That its fit took; 0: it is not there.
   [[nodiscard]] double seconds_of_fit(const Rung& rung) const;

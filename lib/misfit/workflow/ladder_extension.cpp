@@ -109,7 +109,7 @@ class Extension {
     if (listener_.added) listener_.added(rung);
     if (rung.actual_drop && !reads_steps(ladder_.last())) {
       why_off_ = why_too_little(rung.actual_drop, rung.held_out_gain, parameters_added(rung), families_);
-      if (!why_off_.empty()) {
+      if (!why_off_.empty() && !free_run_speaks_for(candidate, rung)) {
         const std::string name = effect_at(candidate.effect, candidate.roles);
         ladder_.root().note(fmt::format("{}: once fitted, {}: its rung is taken off", name, why_off_));
         ladder_.remove(std::to_string(rung.id));
@@ -117,6 +117,17 @@ class Extension {
       }
     }
     added_.push_back({rung.id, ladder_.last().model.request.effects.back().name, candidate, std::move(alternatives)});
+    return true;
+  }
+
+  /// What a test accepted in discovery, and whose rung predicts what is held out worse one sample ahead (why_off_), stays where the free
+  /// run is clearly better, in what is held out, too. Of what explains no more than chance: no.
+  bool free_run_speaks_for(const Candidate& candidate, const Rung& rung) {
+    const bool significant = why_too_little(rung.actual_drop, std::nullopt, parameters_added(rung), families_).empty();
+    if (!candidate.accepted || !significant) return false;
+    const std::string why = ladder_.why_free_run_is_better();
+    if (why.empty()) return false;
+    ladder_.root().note(fmt::format("{}: once fitted, {}; but {}: it stays", effect_at(candidate.effect, candidate.roles), why_off_, why));
     return true;
   }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "misfit/data/estimators.h"
@@ -42,23 +44,41 @@ double largest_growth(const Rung& before, const Rung& after) {
   return std::max(fitted, growth_of_errors(*before.validation_k_step, *after.validation_k_step));
 }
 
-std::string ModelLadder::why_free_run_is_worse() {
-  if (ladder_.rungs.size() < 2 || !asks_for_free_runs(root_)) return "";
+std::optional<ModelLadder::FreeRuns> ModelLadder::free_runs_of_last() {
+  if (ladder_.rungs.size() < 2 || !asks_for_free_runs(root_)) return std::nullopt;
   const std::string trajectory = trajectory_estimator().name;
   const Rung& rung = ladder_.rungs.back();
   const Rung& parent = *std::find_if(ladder_.rungs.begin(), ladder_.rungs.end(), [&](const Rung& r) { return r.id == rung.parent; });
   std::unique_ptr<Session> below;
   if (parent.parent >= 0) below = std::make_unique<Session>(options_for(options_, root_.folder.file(parent.study)), registry_);
-  const Fit before = fit_stage(below ? *below : root_, {trajectory}).front();
-  if (!follows_the_motion(before)) return "";
-  const Fit after = fit_stage(last(), {trajectory}).front();
-  if (!after.usable()) return "the free run, which followed the motion without it, no longer does: " + after.message.substr(0, after.message.find(": "));
+  Fit before = fit_stage(below ? *below : root_, {trajectory}).front();
+  if (!follows_the_motion(before)) return std::nullopt;
+  return FreeRuns{std::move(before), fit_stage(last(), {trajectory}).front()};
+}
+
+std::string ModelLadder::why_free_run_is_worse() {
+  const std::optional<FreeRuns> runs = free_runs_of_last();
+  if (!runs) return "";
+  const auto& [before, after] = *runs;
+  if (!after.usable())
+    return "the free run, which followed the motion without it, no longer does: " + after.message.substr(0, after.message.find(": "));
   constexpr double hardly = 1.03, hardly_held_out = 1.05;  // as of predictions (why_not_kept)
   if (const double growth = growth_of_rms(before.rms, after.rms); growth > hardly)
     return fmt::format("the errors of the free run grow by {:.0f} %", 100.0 * (growth - 1.0));
   const double growth = growth_of_rms(before.validation_rms, after.validation_rms);
   return growth > hardly_held_out ? fmt::format("of what is held out, the errors of the free run grow by {:.0f} %", 100.0 * (growth - 1.0))
                                   : "";
+}
+
+std::string ModelLadder::why_free_run_is_better() {
+  const std::optional<FreeRuns> runs = free_runs_of_last();
+  if (!runs || !runs->after.usable() || runs->after.validation_rms.empty()) return "";
+  constexpr double clearly = 0.9;
+  const double fitted = growth_of_rms(runs->before.rms, runs->after.rms),
+               held_out = growth_of_rms(runs->before.validation_rms, runs->after.validation_rms);
+  if (fitted > clearly || held_out > clearly) return "";
+  return fmt::format("the errors of the free run fall by {:.0f} %, of what is held out by {:.0f} %", 100.0 * (1.0 - fitted),
+                     100.0 * (1.0 - held_out));
 }
 
 void ModelLadder::compare_free_runs() {
