@@ -259,8 +259,7 @@ void RefitWaves::refit_what_promises_little() {
 
 bool RefitWaves::refit_what_a_slow_force_hides() {
   const double p_accept = context_.options.p_accept;
-  const bool none = std::none_of(ranked_.begin(), ranked_.end(), [this](const RankedCandidate& e) { return significant(e); });
-  if (!none || warning_of_slow_force(context_.estimate).empty()) return false;
+  if (warning_of_slow_force(context_.estimate).empty()) return false;
   const auto begin = [&](const RankedCandidate& e) { return e.screening->p_value < p_accept ? e.screening : nullptr; };
   return refit_wave({.begin = begin, .name = "_slow_force"});
 }

@@ -51,8 +51,8 @@ class RefitWaves {
   bool refit_the_other_significant_ones();
   /// The first few significant ones: none could be accepted as it is; and of those that the free run nominates, what went elsewhere.
   bool refit_afresh();
-  /// Where nothing is significant and the random force is slow (slow_force.h), it may stand for what is missing, and leaves a score next to
-  /// nothing of it: those that would be significant if they were the only ones.
+  /// Where the random force is slow (slow_force.h), it may stand for what is missing, and leaves a score next to nothing of it, so that
+  /// something else may be significant: those that would be significant if they were the only ones.
   bool refit_what_a_slow_force_hides();
   void refit_alone(const RankedCandidate& candidate);
 
