@@ -271,13 +271,13 @@ void conclude_motion(SimulatedMotion& motion) {
     motion.sentences.push_back(
         fmt::format("the fitted model does not reproduce the statistics of the measured motion: {} over {} groups of statistics of {} "
                     "simulated motions",
-                    p_equals(motion.p_value), groups, motion.runs));
+                    p_in_words(motion), groups, motion.runs));
     motion.sentences.insert(motion.sentences.end(), departing.begin(), departing.end());
   } else {
     motion.sentences.push_back(fmt::format(
         "no difference between the statistics of the measured and the simulated motion is significant at 1 %: {} over {} groups "
         "of statistics",
-        p_equals(motion.p_value), groups));
+        p_in_words(motion), groups));
   }
   motion.sentences.push_back(
       fmt::format("{} of {} statistics lie outside the 95 % band of the simulated motions; about {:.0f} would by chance", outside, numbers,

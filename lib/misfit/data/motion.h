@@ -53,4 +53,7 @@ struct SimulatedMotion {
   double seconds = 0.0;
 };
 
+/// "p = 0.12"; where no simulated motion lies as far out as the measured one, "p ≤ 0.005": so many simulated motions tell no more.
+[[nodiscard]] std::string p_in_words(const SimulatedMotion& motion);
+
 }  // namespace misfit

@@ -102,6 +102,9 @@ class VerdictBuilder {
   void add_doubts() {
     const auto& doubts = effects_added_ ? in_.ladder->rungs.back().doubts : fit_ != nullptr ? fit_->doubts : std::nullopt;
     if (doubts) out_.doubts = *doubts;
+    if (!effects_added_) return;
+    for (std::string& lost : no_longer_determined(in_.ladder->rungs.front(), in_.ladder->rungs.back()))
+      out_.doubts.push_back(std::move(lost));
   }
   /// The trim before and after what was added, with the 95 % interval of the last one and what the references say.
   void add_trim() {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "misfit/core/text.h"
+#include "misfit/show/rows.h"
 
 namespace misfit {
 
@@ -23,7 +25,21 @@ std::string motion_in_doubt(const Comparison* comparison) {
   return fmt::format(
       "but the fitted model does not make the statistics of the measured motion ({}): something slow or rare, which one "
       "sample hardly shows, may be missing",
-      p_equals(comparison->motion->p_value));
+      p_in_words(*comparison->motion));
+}
+
+std::vector<std::string> no_longer_determined(const Rung& first, const Rung& last) {
+  constexpr double known = 3.0;  // sigmas
+  std::vector<std::string> out;
+  if (!first.estimates || !last.estimates) return out;
+  for (const auto& [name, before] : *first.estimates) {
+    const auto found = last.estimates->find(name);
+    if (found == last.estimates->end() || !(std::abs(before.value) > known * before.sigma) || !(before.sigma > 0.0)) continue;
+    const Estimate& now = found->second;
+    if (!(now.sigma > std::abs(now.value)) || !(now.sigma > std::abs(before.value))) continue;
+    out.push_back(name + " is no longer determined beside what was added: " + shown(now));
+  }
+  return out;
 }
 
 }  // namespace misfit

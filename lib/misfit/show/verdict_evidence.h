@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "misfit/data/comparison.h"
 #include "misfit/data/fit.h"
+#include "misfit/data/ladder.h"
 
 namespace misfit {
 
@@ -14,5 +16,9 @@ namespace misfit {
 /// That the fitted model does not make the statistics of the measured motion, though no effect is found missing; empty: it does, or they
 /// were not compared (nullptr: not at all).
 [[nodiscard]] std::string motion_in_doubt(const Comparison* comparison);
+
+/// Parameters of the study's own model that it knew, to a third at least, and of which the last model knows nothing any more: sigma above
+/// the value, then and now. What was added does what they did: "T_tau is no longer determined beside what was added: (2.1 ± 6.2)e6 s".
+[[nodiscard]] std::vector<std::string> no_longer_determined(const Rung& first, const Rung& last);
 
 }  // namespace misfit

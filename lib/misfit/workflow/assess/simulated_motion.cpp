@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <random>
 
 #include "misfit/compare/motion_statistics.h"
 #include "misfit/compare/noisy_run.h"
 #include "misfit/core/stopwatch.h"
 #include "misfit/inference/states.h"
+#include "misfit/math/decompositions.h"
 #include "misfit/math/whiteness.h"
 #include "misfit/model/whole_steps.h"
 #include "misfit/workflow/assess/assess.h"
@@ -146,6 +149,46 @@ MotionPath at_own_rows(const MotionPath& path, const OwnRows& own) {
   return {path.name, path.unit, on_even_grid(own.t, values), path.spread_only};
 }
 
+/// The model of each run: parameters that the data know only so well would make a motion as far from the measured one as their sigmas,
+/// which is no fault of the model. Drawn from their covariance where that is known to be all there is: no curves (what lies outside of what
+/// was visited is no motion to be compared), and every parameter three sigmas from its bounds; else fixed at the estimate.
+class DrawnModels {
+ public:
+  DrawnModels(const FilterEstimate& estimate, const Model& fixed) : fixed_(fixed), theta_(estimate.model.theta()) {
+    const std::vector<int> free = estimate.model.free_parameters();
+    if (!estimate.model.curves.empty() || free.empty() || estimate.covariance.rows() != theta_.size()) return;
+    constexpr double away = 3.0;  // sigmas
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const Parameter& p = estimate.model.parameters[free[i]];
+      const auto column = static_cast<Eigen::Index>(i);
+      const double reach = away * std::sqrt(estimate.covariance(column, column));
+      if (!(p.value - reach > p.lower) || !(p.value + reach < p.upper)) return;
+      places_.push_back(fixed.find_parameter(p.name));
+    }
+    root_ = cholesky(estimate.covariance);
+  }
+
+  [[nodiscard]] bool is_drawn() const { return root_.has_value(); }
+
+  [[nodiscard]] Model of_run(std::uint64_t seed) const {
+    Model out = fixed_;
+    if (!is_drawn()) return out;
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Eigen::VectorXd z(theta_.size());
+    for (double& value : z) value = normal(random);
+    const Eigen::VectorXd drawn = theta_ + root_->triangularView<Eigen::Lower>() * z;
+    for (std::size_t i = 0; i < places_.size(); ++i) out.parameters[places_[i]].value = drawn[static_cast<Eigen::Index>(i)];
+    return out;
+  }
+
+ private:
+  const Model& fixed_;
+  Eigen::VectorXd theta_;
+  std::vector<int> places_;
+  std::optional<Eigen::MatrixXd> root_;
+};
+
 struct Experiment {
   Signals measured;
   std::vector<double> start;
@@ -175,10 +218,12 @@ void read(const Model& model, Signals& made) {
   }
 }
 
-std::vector<MotionNumbers> simulated_numbers(const FilterWork& work, const StochasticModel& model, std::uint64_t seed,
+/// `seed` of this run in this experiment, `of_run` of the run in all of them: one motion has one model.
+std::vector<MotionNumbers> simulated_numbers(const FilterWork& work, const DrawnModels& models, std::uint64_t of_run, std::uint64_t seed,
                                              const Experiment& e) {
   std::vector<MotionNumbers> out;
-  std::optional<Signals> made = noisy_run(model, e.measured, e.start, seed);
+  const Model model = models.of_run(of_run);
+  std::optional<Signals> made = noisy_run(stochastic_model(*work.estimate, model), e.measured, e.start, seed);
   if (!made) return out;
   read(work.estimate->model, *made);
   const std::vector<MotionPath> paths = paths_of(work.estimate->model, *made);
@@ -232,20 +277,23 @@ SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int
   Model model = all_fixed(estimate.forced.model);
   for (const auto& p : estimate.model.parameters) model.parameters[model.find_parameter(p.name)].value = p.value;
   model.parameters[estimate.forced.time_parameter].value = estimate.noise.force_time;
-  const StochasticModel stochastic = stochastic_model(estimate, model);
+  const DrawnModels models(estimate, model);
   std::vector<Experiment> experiments;
   for (const auto& data : estimate.data) experiments.push_back(experiment_of(work, data));
   run_jobs(
       runs * experiments.size(), threads,
       [&](std::size_t job) {
         Experiment& e = experiments[job / runs];
-        e.simulated[job % runs] = simulated_numbers(work, stochastic, (std::uint64_t{seed} << 32U) + job, e);
+        const std::uint64_t first = std::uint64_t{seed} << 32U;
+        e.simulated[job % runs] = simulated_numbers(work, models, first + runs * experiments.size() + job % runs, first + job, e);
       },
       progress);
   for (const auto& e : experiments) note_gaps(e.measured, out);
   compare_all(experiments, out);
   conclude_motion(out);
-  out.notes.emplace_back("the bands do not include the uncertainty of parameters and initial states, which are fixed at their estimates");
+  out.notes.emplace_back(
+      models.is_drawn() ? "each simulated motion has parameters drawn from their covariance; initial states are fixed at their estimates"
+                        : "the bands do not include the uncertainty of parameters and initial states, which are fixed at their estimates");
   out.seconds = clock.seconds();
   return out;
 }
