@@ -1,4 +1,4 @@
-// What no test of one-step predictions has accepted is also judged by the free run, where the study asks for output_error.
+// What is added is also judged by the free run, where the study asks for output_error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <misfit_models_registry.h>

@@ -27,7 +27,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     if (candidate.empty() || candidate.size() > longest_name_compared) continue;
     const std::string other = lower_case(candidate);
     const std::size_t distance = edit_distance(name, candidate);
-    const bool contained = other.find(wanted) != std::string::npos || wanted.find(other) != std::string::npos;
+    const bool most_of_it = 2 * other.size() >= wanted.size() && wanted.find(other) != std::string::npos;  // not the "ng" of "furlong"
+    const bool contained = other.find(wanted) != std::string::npos || most_of_it;
     if (2 * distance > wanted.size() && !contained) continue;
     if (best.empty() || distance < best_distance) {
       best = candidate;

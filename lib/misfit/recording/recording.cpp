@@ -83,12 +83,16 @@ class ColumnClassifier {
     s.missing = column.values.size() - known.size() - column.text;
     if (column.text > 0) {
       if (known.size() > column.text) {
-        fail(column.text_line,
-             fmt::format("column '{}': '{}' is not a number (a missing value is an empty cell or NaN); {} cell{} of {} are text", s.header,
-                         shown(column.first_text, longest_header), column.text, column.text == 1 ? "" : "s", column.values.size()));
+        fail(column.text_line, fmt::format("column '{}': '{}' is not a number (a missing value is an empty cell or NaN); {} of {} {} text",
+                                           s.header, shown(column.first_text, longest_header), counted(column.text, "cell", "cells"),
+                                           column.values.size(), column.text == 1 ? "is" : "are"));
       }
       s.use = ColumnUse::text;
       s.why = "text";
+      if (!header.unit.empty())
+        out_.remarks.push_back(
+            fmt::format("column '{}' has a unit, and text where numbers are expected ('{}', line {}): it is not in the model", s.header,
+                        shown(column.first_text, longest_header), column.text_line));
       return s;
     }
     if (known.empty()) {

@@ -1,6 +1,11 @@
 #include "misfit/show/glossary.h"
 
+#include <string>
+#include <vector>
+
+#include "misfit/core/text.h"
 #include "misfit/data/estimators.h"
+#include "misfit/data/verdict.h"
 
 namespace misfit {
 
@@ -27,7 +32,11 @@ Glossary main_glossary() {
        "gain of the log likelihood (not doubled), parameters uncertain, of the data that are held out: above 0, the effect predicts "
        "better"},
       {"family-wise p", "the probability that chance gives any one of all tested candidates such a drop; accepted below 0.01"},
-      {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"}};
+      {"ladder, rung", "the sequence of models, each with one effect more; a rung is one of them"},
+      {"verdict", "the answer in one sentence, and in verdict.json as one word of what the search ended with: " + [] {
+         std::vector<std::string> kinds(verdict_names.begin(), verdict_names.end());
+         return join_words(kinds);
+       }() + " (not_decided: not tested to the end, or the best candidate of the last search was rejected, whatever was added before)"}};
 }
 
 Glossary further_glossary() {

@@ -310,8 +310,9 @@ class VerdictBuilder {
     }
   }
 
+  /// Only of what predicts the held-out data better: else there is no reason to add what was rejected.
   [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
-    if (by_hand(rejected).empty()) return command("open");
+    if (by_hand(rejected).empty() || !(rejected.held_out_gain.value_or(0.0) > 0.0)) return command("open");
     return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
   }
 

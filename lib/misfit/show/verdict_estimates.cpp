@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "misfit/core/text.h"
 #include "misfit/data/curve_coefficient.h"
 #include "misfit/show/rows.h"
@@ -40,6 +42,20 @@ std::string numbers_of(const Estimates& parameters) {
   return join_words(out);
 }
 
+/// Estimated in the study's own model, or in a rung, and not in the last model: what was added took over what they do.
+std::vector<std::string> fixed_on_the_way(const Ladder& ladder) {
+  std::vector<std::string> out;
+  const Rung& last = ladder.rungs.back();
+  if (!last.estimates) return out;
+  for (const Rung& rung : ladder.rungs) {
+    if (&rung == &last || !rung.estimates) continue;
+    for (const auto& [name, estimate] : *rung.estimates) {
+      if (!last.estimates->contains(name) && std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
+    }
+  }
+  return out;
+}
+
 std::vector<std::string> added_with_estimates(const Ladder& ladder) {
   std::vector<std::string> out;
   const Rung& last = ladder.rungs.back();
@@ -61,6 +77,9 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
   }
   if (const std::string rest = numbers_of(others_of_last(ladder)); !rest.empty())
     out.push_back((out.empty() ? "parameters of the last model: " : "other parameters of the last model: ") + rest);
+  if (const std::vector<std::string> fixed = fixed_on_the_way(ladder); !fixed.empty())
+    out.push_back("fixed on the way, at what they were before: " + join_words(fixed) +
+                  "; the sigmas of the others are those beside these values");
   return out;
 }
 

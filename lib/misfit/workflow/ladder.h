@@ -44,7 +44,7 @@ class ModelLadder {
   /// errors of free runs before and after.
   void compare_free_runs();
 
-  /// Of what no test has accepted, seen from the second horizon: where the study asks for output_error and the model below the last rung
+  /// Of what was added, seen from the second horizon: where the study asks for output_error and the model below the last rung
   /// follows the motion by it, why the last rung's free run is worse (it no longer follows, or its errors grow by more than 3 %, of what is
   /// held out 5 %); else empty.
   [[nodiscard]] std::string why_free_run_is_worse();

@@ -103,13 +103,18 @@ class Extension {
     return !model.effects.empty() && reads_whole_steps(model, model.effects.back());
   }
 
-  /// False: the rung gains too little once it is fitted, as why_off_ says, and is off again.
-  bool add(const Candidate& candidate, std::vector<Candidate> alternatives) {
+  /// Whether the free run is asked about a rung at once, or by the caller: what needs another effect beside it may be worse by itself.
+  enum class FreeRun { now, later };
+
+  /// False: the rung gains too little once it is fitted, or its free run is worse, as why_off_ says, and is off again.
+  bool add(const Candidate& candidate, std::vector<Candidate> alternatives, FreeRun free_run = FreeRun::now) {
     const Rung& rung = ladder_.add(candidate.effect, candidate);
     if (listener_.added) listener_.added(rung);
     if (rung.actual_drop && !reads_steps(ladder_.last())) {
       why_off_ = why_too_little(rung.actual_drop, rung.held_out_gain, parameters_added(rung), families_);
-      if (!why_off_.empty() && !free_run_speaks_for(candidate, rung)) {
+      const bool speaks_for = !why_off_.empty() && free_run_speaks_for(candidate, rung);
+      if (why_off_.empty() && free_run == FreeRun::now) why_off_ = ladder_.why_free_run_is_worse();
+      if (!why_off_.empty() && !speaks_for) {
         const std::string name = effect_at(candidate.effect, candidate.roles);
         ladder_.root().note(fmt::format("{}: once fitted, {}: its rung is taken off", name, why_off_));
         ladder_.remove(std::to_string(rung.id));
@@ -144,7 +149,7 @@ class Extension {
   bool begin_with_two(const Discovery& discovery) {
     const Candidate* first = candidate_short_ahead(discovery);
     if (first == nullptr || has_left(*first)) return false;
-    if (can_be_added(*first) && holds_beside_another(*first, first->why)) return true;
+    if (can_be_added(*first, {}, FreeRun::later) && holds_beside_another(*first, first->why)) return true;
     ladder_.gained_too_little(effect_at(first->effect, first->roles), why_off_);
     return false;
   }
@@ -182,8 +187,9 @@ class Extension {
   bool begin_after_the_curve(const Discovery& discovery) {
     if (!curve_in_vain_) return false;
     const std::optional<Candidate> first = candidate_after_the_curve(discovery);
-    if (!first || has_left(*first) || !can_be_added(*first, alternatives_to(*first, discovery))) return false;
-    const std::string why = why_not_kept(ladder_.ladder().rungs.back());
+    if (!first || has_left(*first) || !can_be_added(*first, alternatives_to(*first, discovery), FreeRun::later)) return false;
+    std::string why = why_not_kept(ladder_.ladder().rungs.back());
+    if (why.empty()) why = ladder_.why_free_run_is_worse();
     return why.empty() || holds_beside_another(*first, why);
   }
 
@@ -261,7 +267,6 @@ class Extension {
   bool add_tentatively(const Candidate& candidate, std::vector<Candidate> alternatives) {
     if (!can_be_added(candidate, std::move(alternatives))) return false;
     why_off_ = why_not_kept(ladder_.ladder().rungs.back());
-    if (why_off_.empty()) why_off_ = ladder_.why_free_run_is_worse();
     if (why_off_.empty()) return true;
     ladder_.root().note(fmt::format("{}: {}: its rung is taken off", effect_at(candidate.effect, candidate.roles), why_off_));
     take_off_last();
@@ -269,11 +274,11 @@ class Extension {
   }
 
   /// add(), of what may not be possible to fit.
-  bool can_be_added(const Candidate& candidate, std::vector<Candidate> alternatives = {}) {
+  bool can_be_added(const Candidate& candidate, std::vector<Candidate> alternatives = {}, FreeRun free_run = FreeRun::now) {
     const std::string name = effect_at(candidate.effect, candidate.roles);
     was_fitted_ = true;
     try {
-      return add(candidate, std::move(alternatives));
+      return add(candidate, std::move(alternatives), free_run);
     } catch (const InputError& error) {  // what a curve is one of hardly moves in the fit that comes first
       return cannot_be_added(name, error);
     } catch (const RunError& error) {
