@@ -389,10 +389,10 @@ class Extension {
     ladder_.remove(std::to_string(added_[k].rung));
     added_.resize(k);
     try {
-      if (instead && !add(without_refit(*instead), {})) return false;
+      if (instead && !add(without_refit(*instead), {}, FreeRun::later)) return false;
       if (same_effect) added_.back().width_freed = true;
       for (const OnLadder& again : above) {
-        if (!add(as_in(ladder_.last(), without_refit(again.from)), again.alternatives)) return false;
+        if (!add(as_in(ladder_.last(), without_refit(again.from)), again.alternatives, FreeRun::later)) return false;
       }
     } catch (const InputError& error) {  // it needs what has left
       return cannot_be_fitted_again(error);
