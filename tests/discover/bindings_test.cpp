@@ -40,6 +40,12 @@ TEST(Bindings, WhatIsSpilledIsLostWhereItWas) {
                           Roles{{"level", "x2"}, {"port", "dx2/dt"}, {"to_port", "dx1/dt"}}));
 }
 
+TEST(Bindings, HeatDoesNotSpill) {
+  SystemSpec bodies = registry().system("test_tanks").make({})->spec();
+  for (StateSpec& state : bodies.states) state.unit = "K";
+  EXPECT_THAT(enumerate_bindings(registry().effect("overflow_between").spec(), bodies), ElementsAre(Roles{}));
+}
+
 TEST(Bindings, AMotionHasItsRateAndWhatThatIsTheRateOf) {
   EXPECT_THAT(bindings("quadratic_drag", "test_oscillator"), ElementsAre(Roles{}, Roles{{"port", "force"}, {"rate", "v"}}));
   EXPECT_THAT(bindings("cubic_stiffness", "test_oscillator"), ElementsAre(Roles{}, Roles{{"displacement", "x"}, {"port", "force"}}));

@@ -131,6 +131,16 @@ std::vector<Roles> times_other_levels(const std::vector<Roles>& places, const Sy
   return out;
 }
 
+/// Without those whose level is a temperature: heat does not spill from one body into another above an edge, and as a change of the
+/// exchange between them it would explain much of one that is not there.
+std::vector<Roles> without_temperatures(std::vector<Roles> places, const SystemSpec& system) {
+  std::erase_if(places, [&](const Roles& place) {
+    const StateSpec* level = place.contains("level") ? state_called(system, place.at("level")) : nullptr;
+    return level != nullptr && parse_unit(level->unit).same_dimension(parse_unit("K"));
+  });
+  return places;
+}
+
 /// Each place once per state that plays a part in it.
 std::vector<Roles> times_factors(const std::vector<Roles>& places) {
   std::vector<Roles> out;
@@ -283,6 +293,7 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
     std::vector<std::string> ports;
     for (const Roles& place : places) ports.push_back(place.at("port"));
     places = times(places, "to_port", ports);
+    if (has_role(effect.ports, "port")) places = without_temperatures(std::move(places), system);
   }
   if (has_role(effect.quantities, "other")) places = times_other_levels(places, system, may_be_an_input(effect, "other"));
   if (has_role(effect.quantities, "factor")) places = times_factors(places);

@@ -21,9 +21,16 @@ bool follows_the_motion(const Fit& fit) {
                                      [](const ChannelPrediction& p) { return !p.nrmse || *p.nrmse < most; });
 }
 
+bool is_among(const std::vector<std::string>& methods, const std::string& name) {
+  return std::find(methods.begin(), methods.end(), name) != methods.end();
+}
+
+/// By output_error, which has been fitted, or is the one method of the two that the study has.
 bool asks_for_free_runs(const Session& session) {
-  const auto& methods = session.study.methods;
-  return std::find(methods.begin(), methods.end(), trajectory_estimator().name) != methods.end();
+  const std::string trajectory = trajectory_estimator().name;
+  if (!is_among(session.study.methods, trajectory)) return false;
+  return !is_among(session.study.methods, random_force_estimator().name) ||
+         std::filesystem::exists(session.folder.file("fit/" + trajectory + "/fit.json"));
 }
 
 /// RMS over the channels of (after/before); 1 where nothing can be compared.
@@ -84,7 +91,6 @@ std::string ModelLadder::why_free_run_is_better() {
 void ModelLadder::compare_free_runs() {
   const std::string trajectory = trajectory_estimator().name;
   if (ladder_.rungs.size() < 2 || !asks_for_free_runs(root_)) return;
-  if (!std::filesystem::exists(root_.folder.file("fit/" + trajectory + "/fit.json"))) return;  // nobody has asked for it yet
   const Fit before = fit_stage(root_, {trajectory}).front();
   if (!follows_the_motion(before)) return;
   const Fit after = fit_stage(last(), {trajectory}).front();

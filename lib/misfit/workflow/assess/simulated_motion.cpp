@@ -149,14 +149,23 @@ MotionPath at_own_rows(const MotionPath& path, const OwnRows& own) {
   return {path.name, path.unit, on_even_grid(own.t, values), path.spread_only};
 }
 
+/// Every strength without a sigma: at its bound, not distinguishable from 0.
+bool no_force_is_seen(const Fit& fit) {
+  return std::all_of(fit.force.begin(), fit.force.end(),
+                     [](const auto& f) { return f.first == "correlation_time" || !(f.second.sigma > 0.0); });
+}
+
 /// The model of each run: parameters that the data know only so well would make a motion as far from the measured one as their sigmas,
-/// which is no fault of the model. Drawn from their covariance where that is known to be all there is: no curves (what lies outside of what
-/// was visited is no motion to be compared), and every parameter three sigmas from its bounds; else fixed at the estimate.
+/// which is no fault of the model. Drawn from their covariance where that is all there is: no random force is seen (it moves the motion by
+/// more than that, and the bands would be wider than they are), no curves (what lies outside of what was visited is no motion to be
+/// compared), and every parameter three sigmas from its bounds; else fixed at the estimate.
 class DrawnModels {
  public:
-  DrawnModels(const FilterEstimate& estimate, const Model& fixed) : fixed_(fixed), theta_(estimate.model.theta()) {
+  DrawnModels(const FilterEstimate& estimate, const Model& fixed, bool without_random_force)
+      : fixed_(fixed), theta_(estimate.model.theta()) {
     const std::vector<int> free = estimate.model.free_parameters();
     if (!estimate.model.curves.empty() || free.empty() || estimate.covariance.rows() != theta_.size()) return;
+    if (!without_random_force) return;
     constexpr double away = 3.0;  // sigmas
     for (std::size_t i = 0; i < free.size(); ++i) {
       const Parameter& p = estimate.model.parameters[free[i]];
@@ -277,7 +286,7 @@ SimulatedMotion simulated_motion(const FilterWork& work, unsigned long seed, int
   Model model = all_fixed(estimate.forced.model);
   for (const auto& p : estimate.model.parameters) model.parameters[model.find_parameter(p.name)].value = p.value;
   model.parameters[estimate.forced.time_parameter].value = estimate.noise.force_time;
-  const DrawnModels models(estimate, model);
+  const DrawnModels models(estimate, model, no_force_is_seen(work.fit));
   std::vector<Experiment> experiments;
   for (const auto& data : estimate.data) experiments.push_back(experiment_of(work, data));
   run_jobs(

@@ -299,6 +299,11 @@ GuessedModel guess_model(const RecordingSurvey& survey) {
     name_parts(taken, output);
     model.outputs.push_back(std::move(output));
   }
+  const bool counted_from = std::any_of(model.outputs.begin(), model.outputs.end(), [](const GuessedOutput& output) {
+    return output.from_zero ||
+           std::any_of(output.gains.begin(), output.gains.end(), [](const GuessedGain& gain) { return gain.from_zero; });
+  });
+  if (!counted_from) model.zero.reset();
   note_left_out("outputs", left_out,
                 fmt::format("a first model has at most {} outputs, {} states and {} parameters", most_guessed.outputs, most_guessed.states,
                             most_guessed.parameters),
