@@ -20,8 +20,8 @@ using Roles = std::map<std::string, std::string>;
 /// a state is its `rate`, and what it is the rate of `displacement` and `level`; one that is the rate of nothing is its `level`, and its
 /// `rate` too if its unit is one per time (the speed of a motor whose angle nobody models), else its `content`. A conjugate that is no
 /// state is its `rate` if its unit is, or if the equations make it the rate of another quantity, its `displacement` and `level`.
-/// `displacement` is also each input of its unit, where the effect allows that (Role::input_too). `to_port` is each other such port,
-/// `other` each other state of the level's unit, and each input of it where the effect allows that. `factor` is each state among `rate` and
+/// `displacement` is also each input of its unit, where the effect allows that (Role::input_too). `to_port` is each other such port
+/// (beside a `port`, of no temperature: heat does not spill), `other` each other state of the level's unit, and each input of it where the effect allows that. `factor` is each state among `rate` and
 /// `level`. `other_signal` is each other output of the output's unit (with `other_output`: each pair once). `input` is each input, beside a
 /// factor that is a state of a small system also each other state (a product once), and `output` each output (`signal` follows it), if the
 /// system has a default for `input`, or for `signal`: its way of saying that generic effects make sense there. `parameter` is each free
