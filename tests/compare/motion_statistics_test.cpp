@@ -134,7 +134,7 @@ TEST(CompareMotion, LargerMotionIsNamed) {
   conclude_motion(motion);
   EXPECT_DOUBLE_EQ(motion.p_value, 0.01);
   EXPECT_THAT(motion.sentences.front(),
-              testing::StartsWith("the fitted model does not reproduce the statistics of the measured motion: p = 0.01"));
+              testing::StartsWith("the fitted model does not reproduce the statistics of the measured motion: p ≤ 0.01"));
   EXPECT_THAT(motion.sentences, testing::Contains(testing::StartsWith("the distribution of x (flight): p = 0.01")));
 }
 

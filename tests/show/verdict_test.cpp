@@ -340,6 +340,29 @@ TEST(Verdict, EveryPortThatFailsIsNamedWithItsMostSignificantPlace) {
                                        EndsWith("(p = 0.0004); in the last model p = 0.8.")));
 }
 
+TEST(Verdict, AParameterThatWasKnownAndNoLongerIsMakesTheModelDoubtful) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs[0].estimates =
+      std::map<std::string, Estimate>{{"tau", {5000.0, 50.0, "s"}}, {"rest", {5.6, 0.1, "K"}}, {"gain", {2.0, 1.0, "K/W"}}};
+  c.ladder->rungs[1].estimates =
+      std::map<std::string, Estimate>{{"tau", {5100.0, 90.0, "s"}}, {"rest", {-1.5, 2.3, "K"}}, {"gain", {5.0, 15.0, "K/W"}}};
+  EXPECT_THAT(c.verdict().doubts, IsEmpty()) << "rest is known to 2.3 K of 5.6 K, and gain was never known";
+  c.ladder->rungs[1].estimates->at("tau") = {2.1e6, 6.2e6, "s"};
+  EXPECT_THAT(c.verdict().doubts, ElementsAre(testing::StartsWith("tau is no longer determined beside what was added: ")));
+  EXPECT_THAT(c.verdict().sentence, HasSubstr("describes what was missing"));
+}
+
+TEST(Verdict, WhatWasFixedOnTheWayIsNamedSinceSigmasAreThoseBesideIt) {
+  Case c;
+  c.add_effect();
+  c.ladder->rungs[0].estimates = std::map<std::string, Estimate>{{"tau", {5000.0, 50.0, "s"}}, {"rest", {5.6, 0.1, "K"}}};
+  c.ladder->rungs[1].estimates = std::map<std::string, Estimate>{{"tau", {5100.0, 1.0, "s"}}};
+  EXPECT_THAT(c.verdict().added, testing::Contains(testing::StartsWith("fixed on the way, at what they were before: rest;")));
+  c.ladder->rungs[1].estimates->emplace("rest", Estimate{5.7, 0.1, "K"});
+  EXPECT_THAT(c.verdict().added, testing::Not(testing::Contains(HasSubstr("fixed on the way"))));
+}
+
 TEST(Verdict, AnEstimateThatLaterRungsHaveMovedIsGivenOfBothModels) {
   Case c;
   c.add_effect();
@@ -682,6 +705,10 @@ TEST(Verdict, ASearchThatWasCutOffOrRefusesItsBestDecidesNothing) {
     EXPECT_THAT(c.verdict().sentence, testing::StartsWith(words));
   }
   EXPECT_THAT(c.verdict().notes, ElementsAre("lag can be added by hand, to compare the errors before and after."));
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor") << "nothing says that it predicts better";
+  c.discovery->candidates.front().held_out_gain = -0.3;
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor");
+  c.discovery->candidates.front().held_out_gain = 2.0;
   EXPECT_EQ(c.verdict().next, "misfit add configs/motor lag");
   c.discovery->outcome = SearchOutcome::not_decided;
   EXPECT_EQ(c.verdict().next, "misfit discover configs/motor --time-limit 3600 --round-limit 36000") << "a refit has a limit of its own";

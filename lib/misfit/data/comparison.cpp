@@ -63,7 +63,7 @@ Comparison read_comparison(const std::filesystem::path& path) { return read_json
 std::string p_in_words(const SimulatedMotion& motion) {
   const double least = 1.0 / static_cast<double>(motion.runs - motion.failed + 1);
   constexpr double rounding = 1e-9;
-  return motion.p_value > least + rounding ? p_equals(motion.p_value) : "p ≤ " + format_value(least);
+  return motion.runs == 0 || motion.p_value > least + rounding ? p_equals(motion.p_value) : "p ≤ " + format_value(least);
 }
 
 }  // namespace misfit

@@ -310,10 +310,14 @@ class VerdictBuilder {
     }
   }
 
-  /// Only of what predicts the held-out data better: else there is no reason to add what was rejected.
   [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
-    if (by_hand(rejected).empty() || !(rejected.held_out_gain.value_or(0.0) > 0.0)) return command("open");
+    if (by_hand(rejected).empty()) return command("open");
     return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
+  }
+
+  /// Only what predicts the held-out data better: else there is no reason to add what was rejected.
+  [[nodiscard]] std::string add_rejected(const Candidate& rejected) const {
+    return rejected.held_out_gain.value_or(0.0) > 0.0 ? add_by_hand(rejected) : command("open");
   }
 
   /// Of the last model; nullptr: what it lacks is there for longer.
@@ -368,13 +372,13 @@ class VerdictBuilder {
       const Candidate& best = d.candidates.front();
       added(shows_that_something_is_missing(best) ? "something is still missing, and no effect of the library is accepted"
                                                   : "whether more is missing is not decided",
-            add_by_hand(best), VerdictKind::not_decided);
+            add_rejected(best), VerdictKind::not_decided);
       note(best_rejected(best));
       note_of_effect(by_hand(best));
     } else if (d.outcome == SearchOutcome::best_rejected) {
       const Candidate& best = d.candidates.front();
       const bool two = looks_for_two(d);
-      say(VerdictKind::not_decided, d.verdict, two ? command("discover") + " --auto" : add_by_hand(best));
+      say(VerdictKind::not_decided, d.verdict, two ? command("discover") + " --auto" : add_rejected(best));
       two ? note("something else may be missing beside it, with which they do not: --auto looks for both") : note_of_effect(by_hand(best));
     } else if (d.outcome == SearchOutcome::none_suits) {
       say(VerdictKind::not_decided, d.verdict, "misfit help study");
