@@ -38,7 +38,8 @@ struct Interval {
 [[nodiscard]] Figure motion_figure(const std::string& method, const ChannelPrediction& channel, const std::optional<Interval>& zoom);
 
 /// A channel as measured, and as two models predict it kFarAhead samples ahead (ChannelPrediction::ahead): the one whose errors fall most
-/// from `before` to `after`, the model with `added` in it, over the 400 samples in which they do. nullopt: the squares of none fall by a fifth.
+/// from `before` to `after`, the model with `added` in it, over the 400 samples in which they do. nullopt: the squares of none fall by a
+/// fifth.
 [[nodiscard]] std::optional<Figure> change_ahead_figure(const Fit& before, const Fit& after, const std::string& added);
 
 /// An interval of about `length` seconds in the middle third of the record where most samples are finite.
