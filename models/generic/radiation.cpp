@@ -14,7 +14,8 @@ struct Radiation {
   static constexpr const char* valid = "absolute temperatures; grey surfaces whose emissivity does not depend on the temperature";
   static constexpr const char* size = "1 m^2 of emissivity 0.9 at 800 K: 21 kW";
   static constexpr const char* source = "Stefan-Boltzmann law, 5.670374e-8 W/m^2/K^4; Incropera et al. (2007), eq. 1.7";
-  static constexpr const char* excludes = "conduction and convection (exchange, leak), surroundings of which nothing is recorded (radiation_loss)";
+  static constexpr const char* excludes =
+      "conduction and convection (exchange, leak), surroundings of which nothing is recorded (radiation_loss)";
 
   enum Quantity { level, other };
   static constexpr Role quantities[] = {{.name = "level", .unit = "K"}, {.name = "other", .unit = "K", .input_too = true}};
