@@ -226,11 +226,12 @@ class LooseReader {
   void read_row(const Line& line) {
     std::vector<std::string_view> cells = cells_of(line.text, table_.delimiter);
     if (cells.size() == table_.columns.size() + 1 && cells.back().empty()) cells.pop_back();  // a separator at the end of the line
-    if (cells.size() != table_.columns.size())
+    if (cells.size() != table_.columns.size()) {
       fail(line.number, std::to_string(cells.size()) + " cells where the header has " + std::to_string(table_.columns.size()) +
                             (table_.delimiter == ',' && cells.size() > table_.columns.size()
                                  ? ": decimal commas are read between semicolons or tabs, not between commas"
                                  : ""));
+    }
     for (std::size_t j = 0; j < cells.size(); ++j) {
       LooseColumn& column = table_.columns[j];
       const auto value = number_of(cells[j], table_.decimal_comma);
