@@ -1,5 +1,6 @@
 #include "misfit/data/comparison.h"
 
+#include "misfit/core/text.h"
 #include "misfit/data/motion_json.h"
 
 namespace misfit {
