@@ -89,10 +89,11 @@ class ColumnClassifier {
       }
       s.use = ColumnUse::text;
       s.why = "text";
-      if (!header.unit.empty())
+      if (!header.unit.empty()) {
         out_.remarks.push_back(
             fmt::format("column '{}' has a unit, and text where numbers are expected ('{}', line {}): it is not in the model", s.header,
                         shown(column.first_text, longest_header), column.text_line));
+      }
       return s;
     }
     if (known.empty()) {

@@ -47,7 +47,7 @@ class FreeRuns {
   }
 
  private:
-  [[nodiscard]] auto along() { return Simulation{stepper_, signals_, data_.inputs}; }
+  [[nodiscard]] Simulation along() { return Simulation{stepper_, signals_, data_.inputs}; }
 
   template <class Visit>
   void run_from(std::size_t k, Visit& visit) {
