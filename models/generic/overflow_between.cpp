@@ -12,8 +12,7 @@ struct OverflowBetween {
   static constexpr const char* formula = "F_from = -spilled (level - spill_edge), F_to = -caught_share F_from, above the edge; else 0";
   static constexpr const char* symbols =
       "spilled [1/s], spill_edge [level], caught_share of what is spilled that arrives [-], level that spills [any]; port is "
-      "the "
-      "rate of change of that level, to_port that of the one where it arrives";
+      "the rate of change of that level, to_port that of the one where it arrives";
   static constexpr const char* valid = "arrives at once; outflow in proportion to the height above the edge (overflow)";
   static constexpr const char* size =
       "spilled = 0.1 /s and an inflow of 0.02 V/s too much: 0.2 V above the edge; with caught_share = 0.4 the lower tank gets 0.008 V/s";

@@ -12,6 +12,7 @@
 #include "misfit/core/files.h"
 #include "misfit/core/shown.h"
 #include "misfit/core/toml_depth.h"
+#include "misfit/core/toml_document.h"
 #include "misfit/core/toml_outline.h"
 #include "misfit/core/toml_text.h"
 #include "misfit/core/units.h"
@@ -313,18 +314,6 @@ bool Section::is_table(std::string_view key) const { return has(key) && state_->
 bool Section::is_array(std::string_view key) const { return has(key) && state_->node(key)->is_array(); }
 bool Section::is_flag(std::string_view key) const { return has(key) && state_->node(key)->is_boolean(); }
 
-namespace {
-
-/// As its header stands in the file: "[system]", "[[experiment]]", of several the place among them: "[[experiment]] (number 2)".
-std::string header_of(const std::string& path) {
-  const std::size_t open = path.rfind('[');
-  if (open == std::string::npos || path.back() != ']') return "[" + shown(path) + "]";
-  const int place = std::atoi(path.c_str() + open + 1) + 1;
-  return "[[" + shown(path.substr(0, open)) + "]]" + (place > 1 ? " (number " + std::to_string(place) + ")" : "");
-}
-
-}  // namespace
-
 void Section::finish() const { finish(state_->asked); }
 
 void Section::finish(const std::vector<std::string>& valid) const {
@@ -336,7 +325,7 @@ void Section::finish(const std::vector<std::string>& valid) const {
 void Section::fail_unknown(const std::string& key, const std::vector<std::string>& valid) const {
   const std::string what = state_->node(key)->is_table() && state_->path.empty() ? "unknown section [" : "unknown key '";
   const std::string end = what.back() == '[' ? "]" : "'";
-  const std::string inside = state_->path.empty() ? "" : " in " + header_of(state_->path);
+  const std::string inside = state_->path.empty() ? "" : " in " + section_in_words(state_->path);
   throw InputError(where(key), what + shown(key) + end + inside + suggest(key, valid));
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
+#include "misfit/core/shown.h"
 #include "misfit/core/toml_text.h"
 
 namespace misfit {
@@ -115,6 +117,13 @@ std::string toml_texts(const std::vector<std::string>& texts) {
   std::vector<std::string> values;
   for (const std::string& text : texts) values.push_back(toml_string(text));
   return toml_list(values);
+}
+
+std::string section_in_words(const std::string& path) {
+  const std::size_t open = path.rfind('[');
+  if (open == std::string::npos || path.back() != ']') return "[" + shown(path) + "]";
+  const int place = std::atoi(path.c_str() + open + 1) + 1;
+  return "[[" + shown(path.substr(0, open)) + "]]" + (place > 1 ? fmt::format(" (number {})", place) : "");
 }
 
 }  // namespace misfit

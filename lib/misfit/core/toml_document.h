@@ -50,4 +50,7 @@ class TomlDocument {
 [[nodiscard]] std::string toml_list(const std::vector<std::string>& values);  ///< of values that are TOML
 [[nodiscard]] std::string toml_texts(const std::vector<std::string>& texts);  ///< a list of strings
 
+/// A section as its header stands in the file: "[system]", of "experiment[1]" "[[experiment]] (number 2)".
+[[nodiscard]] std::string section_in_words(const std::string& path);
+
 }  // namespace misfit

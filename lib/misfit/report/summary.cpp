@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "misfit/core/display.h"
-#include "misfit/data/estimators.h"
 #include "misfit/report/figures_discovery.h"
 #include "misfit/report/sections.h"
 #include "misfit/show/results.h"
 #include "misfit/show/verdict.h"
+#include "misfit/show/verdict_evidence.h"
 
 namespace misfit::report {
 namespace {
@@ -53,13 +53,6 @@ const Fit* leading_fit(const ReportInput& input) {
   return last;
 }
 
-/// nullptr: none is usable.
-const Fit* random_force_fit(const std::vector<Fit>& fits) {
-  const auto found =
-      std::find_if(fits.begin(), fits.end(), [](const Fit& fit) { return fit.usable() && fit.method == random_force_estimator().name; });
-  return found == fits.end() ? nullptr : &*found;
-}
-
 /// Of the last model, where the verdict is that something of unknown form is missing and comes in pulses; nullptr: it is another.
 const MissingForce* missing_in_pulses(const ReportInput& input) {
   const std::optional<Diagnosis>& last = input.rung ? input.rung->diagnosis : input.diagnosis;
@@ -74,8 +67,8 @@ const MissingForce* missing_in_pulses(const ReportInput& input) {
 /// nothing.
 std::optional<Figure> picture_of_change_ahead(const ReportInput& input) {
   if (!input.last_model) return std::nullopt;
-  const Fit* before = random_force_fit(input.fits);
-  const Fit* after = random_force_fit(input.last_model->fits);
+  const Fit* before = misfit::leading_fit(input.fits);
+  const Fit* after = misfit::leading_fit(input.last_model->fits);
   if (before == nullptr || after == nullptr) return std::nullopt;
   return change_ahead_figure(*before, *after, input.last_model->added);
 }

@@ -22,17 +22,6 @@
 namespace misfit {
 namespace {
 
-/// The fit that the verdict is about: of the method with a random force where that was used, else the last one that has residuals.
-const Fit* leading_fit(const std::vector<Fit>& fits) {
-  const Fit* last = nullptr;
-  for (const Fit& fit : fits) {
-    if (!fit.usable()) continue;
-    if (fit.method == random_force_estimator().name) return &fit;
-    if (last == nullptr || !fit.rms.empty()) last = &fit;
-  }
-  return last;
-}
-
 /// Not decided: refits were cut off by a limit of their own, which a longer round does not lift.
 const char* more_time(SearchOutcome outcome) {
   return outcome == SearchOutcome::not_decided ? " --time-limit 3600 --round-limit 36000" : " --round-limit 3600";

@@ -78,8 +78,7 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
   if (const std::string rest = numbers_of(others_of_last(ladder)); !rest.empty())
     out.push_back((out.empty() ? "parameters of the last model: " : "other parameters of the last model: ") + rest);
   if (const std::vector<std::string> fixed = fixed_on_the_way(ladder); !fixed.empty())
-    out.push_back("fixed on the way, at what they were before: " + join_words(fixed) +
-                  "; the sigmas of the others are those beside these values");
+    out.push_back("fixed on the way: " + join_words(fixed) + "; the sigmas of the others are those beside these values");
   return out;
 }
 

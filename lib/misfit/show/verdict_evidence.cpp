@@ -6,9 +6,20 @@
 #include <cmath>
 
 #include "misfit/core/text.h"
+#include "misfit/data/estimators.h"
 #include "misfit/show/rows.h"
 
 namespace misfit {
+
+const Fit* leading_fit(const std::vector<Fit>& fits) {
+  const Fit* last = nullptr;
+  for (const Fit& fit : fits) {
+    if (!fit.usable()) continue;
+    if (fit.method == random_force_estimator().name) return &fit;
+    if (last == nullptr || !fit.rms.empty()) last = &fit;
+  }
+  return last;
+}
 
 std::string why_nothing_is_known(const Fit& fit) {
   const bool known = std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const auto& p) { return p.second.sigma > 0.0; });

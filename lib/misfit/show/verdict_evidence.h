@@ -9,6 +9,10 @@
 
 namespace misfit {
 
+/// The fit that the verdict is about: of the method with a random force where that was used, else the last one that has residuals. nullptr:
+/// there is none.
+[[nodiscard]] const Fit* leading_fit(const std::vector<Fit>& fits);
+
 /// Why no test of an effect says anything of this fit: measurements so few that no parameter has a standard error, or predictions one
 /// sample ahead that are no better than the mean of the motion. Empty: it is neither.
 [[nodiscard]] std::string why_nothing_is_known(const Fit& fit);

@@ -125,7 +125,7 @@ KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compar
 }
 
 std::vector<std::vector<double>> predictions_far_ahead(const FilterEstimate& estimate, std::size_t experiment) {
-  constexpr std::size_t most_runs = 4000;
+  constexpr std::size_t most_runs = 1000;  // for a picture: every fit makes them, those of a resampling too
   const FilterData& data = estimate.data[experiment];
   const Model fixed = all_fixed(estimate.forced.model);
   Stepper stepper(fixed);

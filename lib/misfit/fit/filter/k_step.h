@@ -25,7 +25,7 @@ enum class ComparedSamples : std::uint8_t { counted, held_out, both };
 [[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compared = ComparedSamples::counted);
 
 /// Predictions of one experiment kFarAhead samples ahead, [output][sample] in SI: the filtered state run on without further measurements.
-/// NaN: none reaches there (at the beginning, behind gaps, where the run diverges, and between those of a recording of more than 4000
+/// NaN: none reaches there (at the beginning, behind gaps, where the run diverges, and between those of a recording of more than 1000
 /// samples, of which every second, third, … is predicted).
 [[nodiscard]] std::vector<std::vector<double>> predictions_far_ahead(const FilterEstimate& estimate, std::size_t experiment);
 
