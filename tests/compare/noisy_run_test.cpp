@@ -59,6 +59,25 @@ TEST(NoisyRun, MeasurementsHaveTheWhiteNoiseAndTheResonanceTheyAreGiven) {
   EXPECT_NEAR(product / (static_cast<double>(coloured.size()) * 1.2 * 1.2), expected, 0.1);
 }
 
+TEST(NoisyRun, WhatIsReadInWholeStepsIsRoundedToTheNearest) {
+  Model still = assemble(spherical(), registry());
+  set_parachute_curves(still);
+  const Signals like = clock(500);
+  const std::vector<double> x0{0.0, 0.2, 0.0, 0.0};
+  MeasurementNoise in_steps;
+  in_steps.step = 0.5, in_steps.level = 0.2;
+  const auto exact = noisy_run({&still, {}, {}, {{}, {}}}, like, x0, 7);
+  const auto read = noisy_run({&still, {}, {}, {{}, in_steps}}, like, x0, 7);
+  ASSERT_TRUE(exact && read);
+  EXPECT_EQ(read->measured[0].values, exact->measured[0].values);
+  for (std::size_t i = 0; i < like.samples(); ++i) {
+    const double value = read->measured[1].values[i];
+    ASSERT_NEAR(std::remainder(value - 0.2, 0.5), 0.0, 1e-9);
+    ASSERT_LE(std::abs(value - exact->measured[1].values[i]), 0.25);
+  }
+  EXPECT_GT(deviation(read->measured[1].values), 0.5) << "it moves over several steps";
+}
+
 /// Gusts are unit processes times their size: noise added in squares that doubles the process makes up for half the size.
 TEST(NoisyRun, NoiseGivenFromOutsideAddsInSquaresToThatOfTheEffect) {
   const Signals like = clock(8000);

@@ -367,6 +367,16 @@ TEST(Recording, TimeThatRunsBackwardBeginsAnotherExperiment) {
   EXPECT_THAT(s.remarks, Contains(HasSubstr("backward")));
 }
 
+TEST(Recording, OneTimeThatIsWrongLeavesItsRowOutAndDoesNotSplitTheRecording) {
+  for (const double wrong : {0.0, 2.5, 900.0}) {
+    const RecordingSurvey s =
+        survey(rows("t_s,y", 100, [wrong](int k) { return fmt::format("{},{}", k == 50 ? wrong : 0.1 * k, std::sin(0.3 * k)); }));
+    ASSERT_EQ(s.parts.size(), 1U) << wrong;
+    EXPECT_EQ(s.parts[0].rows(), 99U) << wrong;
+    EXPECT_THAT(s.remarks, Contains(HasSubstr("1 row whose time is not between"))) << wrong;
+  }
+}
+
 /// An NPY file of records of t and y.
 std::string npy(const std::vector<std::array<double, 2>>& records) {
   std::string head = fmt::format("{{'descr': [('t', '<f8'), ('y', '<f8')], 'fortran_order': False, 'shape': ({},), }}", records.size());

@@ -437,6 +437,21 @@ TEST(Verdict, WhatPredictsWorseIsNotCalledMissing) {
                     testing::Not(HasSubstr("was missing"))));
 }
 
+TEST(Verdict, WhatStaysForTheFreeRunIsSaidWithWhatSpeaksForIt) {
+  Case c;
+  c.add_effect();
+  Rung& rung = c.ladder->rungs.back();
+  rung.actual_drop = 15.0;
+  rung.held_out_gain = -4.7;
+  rung.parameters = {{"friction", {0.1, 0.02, "V/s"}}};
+  rung.stays_for_free_run = "the errors of the free run fall by 40 %, of what is held out by 30 %";
+  const Verdict v = c.verdict();
+  EXPECT_THAT(v.sentence, testing::StartsWith("coulomb_friction was added, and stays for the free run, though one sample ahead what is "
+                                              "held out is predicted worse with it"));
+  EXPECT_THAT(v.added, testing::ElementsAre("coulomb_friction: friction = 0.100 ± 0.020 V/s; held-out gain -4.7; the errors of the free "
+                                            "run fall by 40 %, of what is held out by 30 %"));
+}
+
 TEST(Verdict, WhatLeftALackOfFitIsAPartOfWhatIsMissingUntilNothingIsMissingAnyMore) {
   Case c;
   c.add_effect();

@@ -52,6 +52,10 @@ class ColouredNoise {
   std::array<double, 3> root_{};  ///< lower Cholesky factor of the step's noise over σ²
 };
 
+double as_rounded(const MeasurementNoise& noise, double value) {
+  return noise.step > 0.0 ? noise.level + noise.step * std::round((value - noise.level) / noise.step) : value;
+}
+
 }  // namespace
 
 std::optional<Signals> noisy_run(const StochasticModel& model, const Signals& like, const std::vector<double>& x0, std::uint64_t seed) {
@@ -73,7 +77,7 @@ std::optional<Signals> noisy_run(const StochasticModel& model, const Signals& li
       if (i > 0) coloured.step(like.t[i] - like.t[i - 1], random);
       const double measured =
           run.y(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) + coloured.value() + model.noise[c].white * normal(random);
-      if (std::isfinite(values[i])) values[i] = measured;
+      if (std::isfinite(values[i])) values[i] = as_rounded(model.noise[c], measured);
     }
   }
   return out;

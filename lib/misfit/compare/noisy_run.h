@@ -9,12 +9,14 @@
 
 namespace misfit {
 
-/// Noise of one measurement: white, and a resonance j'' + 2 ζ ω j' + ω² j = noise of stationary sigma `coloured`.
+/// Noise of one measurement: white, and a resonance j'' + 2 ζ ω j' + ω² j = noise of stationary sigma `coloured`; what is read is the
+/// nearest of `level` plus whole steps.
 struct MeasurementNoise {
   double white = 0.0;               ///< sigma [unit]
   double coloured = 0.0;            ///< stationary sigma [unit]
   double coloured_frequency = 1.0;  ///< ω/2π [Hz]
   double coloured_damping = 0.3;    ///< ζ
+  double step = 0.0, level = 0.0;   ///< [unit]; step 0: read as it is
 };
 
 /// A fitted model with all that is random about it.

@@ -37,6 +37,7 @@ void fields(Archive& json, MaybeConst<Rung> auto& r) {
   json.if_there("remained", r.remained), json.if_there("why_too_little", r.why_too_little);
   json.if_there("free_rms", r.free_rms), json.if_there("validation_free_rms", r.validation_free_rms);
   json.if_there("doubts", r.doubts), json.if_there("kept", r.kept), json.if_there("alike", r.alike);
+  json.if_there("stays_for_free_run", r.stays_for_free_run);
 }
 
 int parameters_added(const Rung& rung) { return rung.new_parameters.value_or(static_cast<int>(rung.parameters.size())); }

@@ -43,6 +43,8 @@ struct Rung {
   std::optional<std::map<std::string, std::string>> holds;           ///< Candidate::holds of what was added
   std::optional<std::string> also;                                   ///< other values of what was added that explain hardly less, in words
   std::optional<std::vector<std::string>> alike;  ///< what these data could not tell from it when it was added, as effect_at() says it
+  /// By how much its free run is better, in words: why it stays though what is held out is predicted worse one sample ahead.
+  std::optional<std::string> stays_for_free_run;
   std::string note;                               ///< in words
 };
 /// Steps of Rung::k_step.

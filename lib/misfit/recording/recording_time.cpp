@@ -13,14 +13,23 @@
 namespace misfit {
 namespace {
 
+/// One time that is wrong by itself: time runs forward from the row before it to the row after it, and this one lies outside.
+bool is_out_of_order(const std::vector<double>& t, std::size_t i) {
+  return i > 0 && i + 1 < t.size() && t[i - 1] < t[i + 1] && (t[i] < t[i - 1] || t[i] > t[i + 1]);
+}
+
 /// Rows in which time runs forward.
 void cut(const std::vector<double>& t, const std::vector<double>& segments, RecordingTime& out) {
-  std::size_t without = 0, repeated = 0, backward = 0;
+  std::size_t without = 0, repeated = 0, backward = 0, wrong = 0;
   std::map<double, std::size_t> piece_of;  // the last of each segment
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double segment = segments.empty() ? 0.0 : segments[i];
     if (!std::isfinite(t[i]) || !std::isfinite(segment)) {
       ++without;
+      continue;
+    }
+    if (segments.empty() && is_out_of_order(t, i)) {
+      ++wrong;
       continue;
     }
     const auto [own, is_new] = piece_of.emplace(segment, out.pieces.size());
@@ -35,6 +44,9 @@ void cut(const std::vector<double>& t, const std::vector<double>& segments, Reco
     out.pieces[own->second].push_back(i);
   }
   if (without > 0) out.remarks.push_back(counted(without, "row without a time is left out", "rows without a time are left out"));
+  if (wrong > 0)
+    out.remarks.push_back(counted(wrong, "row whose time is not between those of the rows before and after it is left out",
+                                  "rows whose times are not between those of the rows before and after them are left out"));
   if (repeated > 0)
     out.remarks.push_back(counted(repeated, "row repeats the time of the row before and is left out",
                                   "rows repeat the time of the row before and are left out"));

@@ -71,6 +71,7 @@ std::vector<std::string> added_with_estimates(const Ladder& ladder) {
       line += fmt::format(" in the last model ({} in rung {})", values_of(rung.parameters), rung.id);
     if (rung.kept) line += (seen ? "" : "; ") + *rung.kept;
     if (rung.held_out_gain) line += "; held-out gain " + shown_gain(rung.held_out_gain);
+    if (rung.stays_for_free_run) line += "; " + *rung.stays_for_free_run;
     if (rung.also) line += "; " + *rung.also;
     if (rung.alike) line += "; when it was added these data could not tell it from " + join_words(*rung.alike);
     out.push_back(line);

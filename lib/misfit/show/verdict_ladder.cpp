@@ -13,14 +13,16 @@ namespace {
 
 /// What the likelihood says of what a rung added. Of the hold: it is late by half a sampling interval, which is the hold of an input and
 /// nothing that is missing. A part: something remained beside it, and still does at the end of the ladder, so that it may only look like
-/// what is missing. Untested: no likelihood compares it with the model before (another system, or a comparison that was cut off).
-enum class Evidence { needed, of_the_hold, a_part, untested, predicts_worse, chance };
+/// what is missing. Far ahead: what is held out is predicted worse one sample ahead, and the free run is better. Untested: no likelihood
+/// compares it with the model before (another system, or a comparison that was cut off).
+enum class Evidence { needed, of_the_hold, a_part, far_ahead, untested, predicts_worse, chance };
 
 Evidence evidence_for(const Rung& rung, bool something_remains) {
   if (!rung.actual_drop) return Evidence::untested;
   if (explains_no_more_than_chance(rung)) return Evidence::chance;
   if (rung.holds) return Evidence::of_the_hold;
-  if (!is_seen_in_measurements(rung) && rung.held_out_gain && *rung.held_out_gain < 0.0) return Evidence::predicts_worse;
+  if (!is_seen_in_measurements(rung) && rung.held_out_gain && *rung.held_out_gain < 0.0)
+    return rung.stays_for_free_run ? Evidence::far_ahead : Evidence::predicts_worse;
   return rung.remained && something_remains ? Evidence::a_part : Evidence::needed;
 }
 
@@ -36,6 +38,9 @@ Words words_of(Evidence evidence) {
               " are half a sampling interval late: it is the hold of an input that is wrong, not the model"};
     case Evidence::a_part:
       return {" explains a part of what is missing", " explain a part of what is missing"};
+    case Evidence::far_ahead:
+      return {" was added, and stays for the free run, though one sample ahead what is held out is predicted worse with it",
+              " were added, and stay for the free run, though one sample ahead what is held out is predicted worse with them"};
     case Evidence::untested:
       return {" was added, and no likelihood compares it with the model before",
               " were added, and no likelihood compares them with the models before"};
@@ -111,8 +116,8 @@ std::string names_added(const Ladder& ladder) {
 std::vector<std::string> added_in_clauses(const AddedWork& work) {
   std::vector<std::string> out;
   bool explains = false;  // anything more than chance does
-  for (const Evidence evidence :
-       {Evidence::needed, Evidence::of_the_hold, Evidence::a_part, Evidence::untested, Evidence::predicts_worse, Evidence::chance}) {
+  for (const Evidence evidence : {Evidence::needed, Evidence::of_the_hold, Evidence::a_part, Evidence::far_ahead, Evidence::untested,
+                                  Evidence::predicts_worse, Evidence::chance}) {
     std::vector<std::string> names;
     for (const Rung& rung : work.ladder.rungs) {
       if (!rung.added.empty() && evidence_for(rung, work.something_remains) == evidence) names.push_back(rung_in_words(rung));

@@ -40,6 +40,9 @@ class ModelLadder {
   /// Notes of what was added and taken off again, as effect_at() says it, that it gains too little beside the last rung's model, and why.
   void gained_too_little(const std::string& effect, const std::string& why);
 
+  /// Notes why the last rung stays though its predictions of what is held out are worse one sample ahead (why_free_run_is_better()).
+  void stays_for_free_run(const std::string& why);
+
   /// Where output_error of the study's own model has been fitted, as the study asks, and follows the motion, that of the last rung, too:
   /// errors of free runs before and after.
   void compare_free_runs();

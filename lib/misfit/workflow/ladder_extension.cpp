@@ -133,6 +133,7 @@ class Extension {
     const std::string why = ladder_.why_free_run_is_better();
     if (why.empty()) return false;
     ladder_.root().note(fmt::format("{}: once fitted, {}; but {}: it stays", effect_at(candidate.effect, candidate.roles), why_off_, why));
+    ladder_.stays_for_free_run(why);
     return true;
   }
 

@@ -13,6 +13,7 @@
 #include "misfit/core/stopwatch.h"
 #include "misfit/inference/states.h"
 #include "misfit/math/decompositions.h"
+#include "misfit/math/statistics.h"
 #include "misfit/math/whiteness.h"
 #include "misfit/model/whole_steps.h"
 #include "misfit/workflow/assess/assess.h"
@@ -72,7 +73,26 @@ std::vector<MotionPath> paths_of(const Model& model, const Signals& signals) {
   return out;
 }
 
-StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& model) {
+/// Noise of the channels as they were read in one experiment. The white noise of readings in whole steps has their rounding in it
+/// (mark_rounding()), which is made again: where the motion is slow, it is not white. Where the model itself reads in steps: read().
+std::vector<MeasurementNoise> measurement_noise(const FilterEstimate& estimate, const Signals& measured) {
+  const bool model_reads_steps = !steps_of_outputs(estimate.model).empty();
+  std::vector<MeasurementNoise> out;
+  for (std::size_t c = 0; c < measured.measured.size(); ++c) {
+    const ChannelNoise& from = estimate.noise.channels[c];
+    MeasurementNoise& own = out.emplace_back(from.white, from.coloured, from.coloured_frequency, from.coloured_damping);
+    if (model_reads_steps) continue;
+    std::vector<double> known = measured.measured[c].values;
+    std::erase_if(known, [](double v) { return !std::isfinite(v); });
+    if (known.empty()) continue;
+    own.level = known.front();
+    own.step = resolution_of(std::move(known));
+    own.white = std::sqrt(std::max(from.white * from.white - own.step * own.step / 12.0, 0.0));
+  }
+  return out;
+}
+
+StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& model, const std::vector<MeasurementNoise>& noise) {
   StochasticModel out;
   out.model = &model;
   const int own = model.states() - model.system_states();
@@ -84,8 +104,7 @@ StochasticModel stochastic_model(const FilterEstimate& estimate, const Model& mo
     out.intensity[place] = force * std::sqrt(2.0 / estimate.noise.force_time);
     out.start_sigma[place] = force;
   }
-  for (const ChannelNoise& c : estimate.noise.channels)
-    out.noise.push_back({c.white, c.coloured, c.coloured_frequency, c.coloured_damping});
+  out.noise = noise;
   return out;
 }
 
@@ -201,6 +220,7 @@ class DrawnModels {
 struct Experiment {
   Signals measured;
   std::vector<double> start;
+  std::vector<MeasurementNoise> noise;
   std::vector<OwnRows> own;       ///< per path
   std::vector<MotionPath> paths;  ///< at these rows
   std::vector<MotionScales> scales;
@@ -211,6 +231,7 @@ Experiment experiment_of(const FilterWork& work, const FilterData& data) {
   Experiment e;
   e.measured = as_filtered(data);
   e.start = smoothed_start(*work.estimate, data);
+  e.noise = measurement_noise(*work.estimate, e.measured);
   for (const MotionPath& path : paths_of(work.estimate->model, e.measured)) {
     const OwnRows& own = e.own.emplace_back(own_rows_of(path, e.measured.t));
     const MotionPath& there = e.paths.emplace_back(at_own_rows(path, own));
@@ -232,7 +253,7 @@ std::vector<MotionNumbers> simulated_numbers(const FilterWork& work, const Drawn
                                              const Experiment& e) {
   std::vector<MotionNumbers> out;
   const Model model = models.of_run(of_run);
-  std::optional<Signals> made = noisy_run(stochastic_model(*work.estimate, model), e.measured, e.start, seed);
+  std::optional<Signals> made = noisy_run(stochastic_model(*work.estimate, model, e.noise), e.measured, e.start, seed);
   if (!made) return out;
   read(work.estimate->model, *made);
   const std::vector<MotionPath> paths = paths_of(work.estimate->model, *made);
