@@ -21,7 +21,9 @@ struct OverflowBetween {
   static constexpr const char* excludes = "delay on the way, the weir power 1.5; where nothing is caught: overflow";
 
   enum Quantity { level };
-  static constexpr Role quantities[] = {{.name = "level", .unit = "*"}};
+  /// Neither heat nor a concentration, a speed or a current spills.
+  static constexpr const char* no_levels[] = {"K", "kg/m^3", "mol/m^3", "m/s", "rad/s", "A"};
+  static constexpr Role quantities[] = {{.name = "level", .unit = "*", .never = no_levels}};
   enum Port { port, to_port };
   static constexpr Role ports[] = {{.name = "port", .unit = "{level}/s"}, {.name = "to_port", .unit = "{level}/s"}};
   enum Coefficient { spilled, spill_edge, caught_share };

@@ -307,6 +307,19 @@ TEST(Refit, FromOneStepOnEndsWhereTheEstimateWithTheEffectDoes) {
   EXPECT_LE(onwards.estimate.linearisations, plain.estimate.linearisations);
 }
 
+/// Wherever it is cut off: in its searches, or in what is tried after them.
+TEST(Refit, ThatIsCutOffIsUnfinishedAndThrowsNothing) {
+  const World world(record_of_cart({effect("delay")}, {{"delay", 0.05}}));
+  const ScreeningResult& screening = world.screening_of("delay");
+  RefitWork work{world.estimate, world.signals, registry()};
+  for (const double seconds : {1e-6, 0.01, 0.03, 0.1, 0.3}) {
+    work.time_limit = seconds;
+    Refit found;
+    ASSERT_NO_THROW(found = refit(work, screening)) << seconds;
+    EXPECT_TRUE(found.ok || found.out_of_time) << seconds << found.why;
+  }
+}
+
 /// Above all displacements a stop does nothing, whatever its stiffness.
 TEST(Refit, OfAnEdgeThatIsThrownOutOfTheDataFindsItAllTheSame) {
   const World world(record_of_cart({effect("upper_stop")}, {{"stop_stiffness", 20.0}, {"edge", 1.0}}));

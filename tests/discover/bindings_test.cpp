@@ -40,10 +40,12 @@ TEST(Bindings, WhatIsSpilledIsLostWhereItWas) {
                           Roles{{"level", "x2"}, {"port", "dx2/dt"}, {"to_port", "dx1/dt"}}));
 }
 
-TEST(Bindings, HeatDoesNotSpill) {
-  SystemSpec bodies = registry().system("test_tanks").make({})->spec();
-  for (StateSpec& state : bodies.states) state.unit = "K";
-  EXPECT_THAT(enumerate_bindings(registry().effect("overflow_between").spec(), bodies), ElementsAre(Roles{}));
+TEST(Bindings, NeitherHeatNorAConcentrationNorASpeedSpills) {
+  for (const char* unit : {"K", "g/l", "m/s", "rad/s"}) {
+    SystemSpec bodies = registry().system("test_tanks").make({})->spec();
+    for (StateSpec& state : bodies.states) state.unit = unit;
+    EXPECT_THAT(enumerate_bindings(registry().effect("overflow_between").spec(), bodies), ElementsAre(Roles{})) << unit;
+  }
 }
 
 TEST(Bindings, AMotionHasItsRateAndWhatThatIsTheRateOf) {

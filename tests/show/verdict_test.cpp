@@ -151,6 +151,19 @@ TEST(Verdict, NothingMissingIsDoubtedWhereTheSimulatedMotionIsAnother) {
   EXPECT_THAT(c.verdict().notes, ElementsAre(AllOf(HasSubstr("statistics of the measured motion"), HasSubstr("0.005"))));
 }
 
+TEST(Verdict, NothingMissingIsDoubtedWhereAMapOfTheMissingForceIsSignificant) {
+  Case c;
+  c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "");
+  c.fail_at_rest();
+  EXPECT_THAT(c.verdict().notes, Contains("Though no effect is found, the missing dw/dt against w is significant (p = 1e-20)."));
+  c.add_effect();
+  c.rung_diagnosis = c.diagnosis;
+  c.rung_diagnosis->maps.front().p_corrected = 0.004;
+  EXPECT_THAT(c.verdict().notes, Contains("Though no effect is found, the missing dw/dt against w is significant (p = 0.004)."));
+  c.rung_diagnosis->maps.front().p_corrected = 0.4;
+  EXPECT_THAT(c.verdict().notes, Not(Contains(HasSubstr("Though no effect is found"))));
+}
+
 TEST(Verdict, WhatCouldNotBeToldFromAnEffectWhenItWasAddedIsSaidWithItsValues) {
   Case c;
   c.add_effect();

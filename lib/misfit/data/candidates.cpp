@@ -162,6 +162,8 @@ std::size_t curves_tested(const Discovery& discovery) {
   return static_cast<std::size_t>(std::count_if(discovery.candidates.begin(), discovery.candidates.end(), is_tested_curve));
 }
 
+std::string unknown_curve_key(const std::string& port, const std::string& quantity) { return "unknown:" + port + "(" + quantity + ")"; }
+
 double gain_in_all(const Candidate& candidate) { return 0.5 * candidate.actual_drop.value_or(0.0) + candidate.held_out_gain.value_or(0.0); }
 
 const Candidate* candidate_to_begin_with(const Discovery& discovery) {
@@ -177,7 +179,7 @@ const Candidate* candidate_to_begin_with(const Discovery& discovery) {
 std::optional<Candidate> candidate_after_the_curve(const Discovery& discovery) {
   Discovery others = discovery;
   others.unexplained_effects.clear();
-  const std::string in_vain = "unknown:" + discovery.unexplained_port + "(" + discovery.unexplained_quantity + ")";
+  const std::string in_vain = unknown_curve_key(discovery.unexplained_port, discovery.unexplained_quantity);
   std::erase_if(others.candidates, [&](const Candidate& c) { return c.effect == in_vain; });
   const Candidate* best = candidate_to_begin_with(others);
   return best == nullptr ? std::nullopt : std::optional(*best);

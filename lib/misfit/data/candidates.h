@@ -27,7 +27,7 @@ inline constexpr std::array<const char*, 4> candidate_family_names = {"physics",
 /// One thing that the model could lack.
 struct Candidate {
   int rank = 0;        ///< 1 = first
-  std::string effect;  ///< key, or "unknown:PORT(QUANTITY)"
+  std::string effect;  ///< key, or unknown_curve_key()
   CandidateFamily family = CandidateFamily::physics;
   std::vector<std::string> ports;
   std::map<std::string, std::string> roles;  ///< bindings that differ from the defaults, as a study would write them
@@ -71,6 +71,9 @@ struct NotTried {
   EffectPlace place;
   std::string reason;
 };
+
+/// What a curve of unknown form is called among the candidates: "unknown:PORT(QUANTITY)".
+[[nodiscard]] std::string unknown_curve_key(const std::string& port, const std::string& quantity);
 
 /// "overflow (level = x1, port = dx1/dt)"; the key alone where all roles are the defaults.
 [[nodiscard]] std::string effect_at(const std::string& effect, const std::map<std::string, std::string>& roles);

@@ -131,13 +131,15 @@ std::vector<Roles> times_other_levels(const std::vector<Roles>& places, const Sy
   return out;
 }
 
-/// Without those whose level is a temperature: heat does not spill from one body into another above an edge, and as a change of the
-/// exchange between them it would explain much of one that is not there.
-std::vector<Roles> without_temperatures(std::vector<Roles> places, const SystemSpec& system) {
-  std::erase_if(places, [&](const Roles& place) {
-    const StateSpec* level = place.contains("level") ? state_called(system, place.at("level")) : nullptr;
-    return level != nullptr && parse_unit(level->unit).same_dimension(parse_unit("K"));
-  });
+/// Without those where a role stands for a state of a kind that it never is (Role::never).
+std::vector<Roles> without_what_it_never_is(std::vector<Roles> places, const EffectSpec& effect, const SystemSpec& system) {
+  for (const Role& role : effect.quantities) {
+    std::erase_if(places, [&](const Roles& place) {
+      const StateSpec* state = place.contains(role.name) ? state_called(system, place.at(role.name)) : nullptr;
+      return state != nullptr && std::any_of(role.never.begin(), role.never.end(),
+                                             [&](const char* unit) { return parse_unit(state->unit).same_dimension(parse_unit(unit)); });
+    });
+  }
   return places;
 }
 
@@ -293,8 +295,8 @@ std::vector<Roles> enumerate_bindings(const EffectSpec& effect, const SystemSpec
     std::vector<std::string> ports;
     for (const Roles& place : places) ports.push_back(place.at("port"));
     places = times(places, "to_port", ports);
-    if (has_role(effect.ports, "port")) places = without_temperatures(std::move(places), system);
   }
+  places = without_what_it_never_is(std::move(places), effect, system);
   if (has_role(effect.quantities, "other")) places = times_other_levels(places, system, may_be_an_input(effect, "other"));
   if (has_role(effect.quantities, "factor")) places = times_factors(places);
   if (has_role(effect.quantities, "input")) {

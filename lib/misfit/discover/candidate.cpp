@@ -64,7 +64,7 @@ std::string what_was_tried(const ScreeningResult& s) {
 
 Candidate unknown_candidate(const UnknownCurve& curve, double families, double p_accept) {
   Candidate c;
-  c.effect = "unknown:" + curve.port + "(" + curve.quantity + ")";
+  c.effect = unknown_curve_key(curve.port, curve.quantity);
   c.family = CandidateFamily::unknown;
   c.ports = {curve.port};
   c.score = c.predicted_drop = curve.result.chi2;

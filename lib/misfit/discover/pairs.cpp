@@ -120,7 +120,10 @@ std::optional<Pair> second_beside(const RankedCandidate& in, const std::vector<R
   out.second = second.entry;
   if (in.alone_gains_nothing) {
     out.held_out_gain = held_out.gain(both.estimate);
-    if (!(out.held_out_gain > least_held_out_gain(estimated_parameters(*in.refit) + estimated_parameters(both)))) return std::nullopt;
+    // Neither gains anything by itself, and the second is the best of all: the largest of N gains by chance is about log N.
+    const double by_chance = std::log(static_cast<double>(ranked.size()));
+    const int parameters = estimated_parameters(*in.refit) + estimated_parameters(both);
+    if (!(out.held_out_gain > least_held_out_gain(parameters) + by_chance)) return std::nullopt;
   }
   // The threshold stays a share of the drop of `in` alone, as in step 5: with the drop of both, a better second effect would allow more
   // lack of fit.

@@ -365,10 +365,7 @@ class RefitSearch {
   Refit out_;
 };
 
-}  // namespace
-
-Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from) {
-  const Watch watch("the refit of " + screening.candidate_model->effect, work.time_limit);
+Refit refit_in_time(const RefitWork& work, const ScreeningResult& screening, const OneStep& from, const Watch& watch) {
   Refit out = RefitSearch(work, screening, watch).run(from);
   const bool in_time = (out.ok && out.estimate.converged) || !watch.spent();
   if (!out.ok) return in_time ? out : unfinished(screening, watch.words());
@@ -380,6 +377,17 @@ Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneSt
   note_output_as_late(out);
   if (!whole_tried || !free_drifts(work, out)) return unfinished(screening, watch.words(), drop_of(out.estimate, work.without, screening));
   return with_what_is_said(work, screening, std::move(out));
+}
+
+}  // namespace
+
+Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from) {
+  const Watch watch("the refit of " + screening.candidate_model->effect, work.time_limit);
+  try {
+    return refit_in_time(work, screening, from, watch);
+  } catch (const TimeLimitReached& spent) {  // between its searches: whoever asked for it goes on without
+    return unfinished(screening, spent.what());
+  }
 }
 
 int estimated_parameters(const Refit& refit) {

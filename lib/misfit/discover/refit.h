@@ -95,7 +95,8 @@ struct OneStep {
 /// down to what it resolves now (refit_sizes.h). A strength at which the effect would be whole (whole_strength.h) is then fixed there if
 /// that costs the log-likelihood little (fix_whole_strengths()): from what was found and from the best of the shapes that the screening
 /// looked at, the higher of the two. A lag and a pole of the system may have changed places (exchanged_poles.h): the other order is tried.
-/// Last, a shape that may drift (CoefficientSpec::drift_of) does if the data ask for it.
+/// Last, a shape that may drift (CoefficientSpec::drift_of) does if the data ask for it. Throws nothing where its limit of time is spent
+/// (Refit::out_of_time).
 [[nodiscard]] Refit refit(const RefitWork& work, const ScreeningResult& screening, const OneStep& from = {});
 
 /// The refit of an effect for which no time was left: `drop` is how far it had come.

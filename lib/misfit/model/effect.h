@@ -18,6 +18,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -57,6 +58,8 @@ struct Role {
   bool parameter_too = false;
   /// The coefficient that is the delay with which it is read (Reads::late()): it must then stand for an input of the system.
   const char* late_by = "";
+  /// Of generic effects: units of the kinds of quantities that it is never looked for at ("K": at no temperature).
+  std::span<const char* const> never = {};
 };
 
 /// At which values of a shape discovery tests an effect; from the best of them its refit begins.

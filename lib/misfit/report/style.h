@@ -58,7 +58,9 @@ code { font: .85rem "DejaVu Sans Mono", Consolas, monospace; overflow-wrap: anyw
 @media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; } a { color: inherit; } h2 { margin-top: 1rem; }
   figure, tr, .warnings li { break-inside: avoid; } h2, h3, summary { break-after: avoid; } .wide { overflow: visible; }
   table { font-size: min(8.5pt, calc(145vw / var(--letters, 1))); } th, td { padding-right: 1em; } td.number { white-space: normal; }
-  section:first-child figure svg { max-height: 6.5cm; } section:first-child ul { columns: 2; column-gap: 2.5em; } section:first-child li { break-inside: avoid; }
+  figure { display: inline-block; width: 49.5%; margin: .3rem 0 .6rem; padding-right: 1.5%; vertical-align: top; } figcaption { font-size: 8pt; line-height: 1.3; }
+  section:first-child figure { display: block; width: auto; padding: 0; }
+  section:first-child figure svg { max-height: 6.5cm; } main ul { columns: 2; column-gap: 2.5em; } main li { break-inside: avoid; }
   summary { list-style: none; } figcaption .files { display: none; }
   details::details-content { content-visibility: visible; height: auto; } details:not([open])::details-content { display: block; } }
 )css";

@@ -42,15 +42,12 @@ std::vector<std::string> findings(const ModelResults& model, bool verdict) {
   return sentences;
 }
 
-/// Of the method with a random force where it was used, else of the last one that predicts.
-const Fit* leading_fit(const ReportInput& input) {
-  const Fit* last = nullptr;
-  for (const Fit& fit : input.fits) {
-    if (fit.predictions.empty()) continue;
-    if (fit.usable() || last == nullptr) last = &fit;
-    if (fit.usable() && !fit.force.empty()) return &fit;
-  }
-  return last;
+/// That of the verdict, or where it has no predictions to draw, the last one that has.
+const Fit* fit_to_draw(const std::vector<Fit>& fits) {
+  const Fit* leading = leading_fit(fits);
+  if (leading != nullptr && !leading->predictions.empty()) return leading;
+  const auto last = std::find_if(fits.rbegin(), fits.rend(), [](const Fit& fit) { return !fit.predictions.empty(); });
+  return last == fits.rend() ? nullptr : &*last;
 }
 
 /// Of the last model, where the verdict is that something of unknown form is missing and comes in pulses; nullptr: it is another.
@@ -67,8 +64,8 @@ const MissingForce* missing_in_pulses(const ReportInput& input) {
 /// nothing.
 std::optional<Figure> picture_of_change_ahead(const ReportInput& input) {
   if (!input.last_model) return std::nullopt;
-  const Fit* before = misfit::leading_fit(input.fits);
-  const Fit* after = misfit::leading_fit(input.last_model->fits);
+  const Fit* before = leading_fit(input.fits);
+  const Fit* after = leading_fit(input.last_model->fits);
   if (before == nullptr || after == nullptr) return std::nullopt;
   return change_ahead_figure(*before, *after, input.last_model->added);
 }
@@ -91,7 +88,7 @@ std::optional<Figure> picture_of(const ReportInput& input) {
       return map_change_figure(before, *after, input.rung->added);
   }
   if (maps) return map_figure(input.diagnosis->maps.front());
-  const Fit* fit = leading_fit(input);
+  const Fit* fit = fit_to_draw(input.fits);
   return fit == nullptr ? std::nullopt : std::optional(motion_figure(fit->method, fit->predictions.front(), std::nullopt));
 }
 

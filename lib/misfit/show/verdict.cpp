@@ -376,6 +376,7 @@ class VerdictBuilder {
       missing_in_pulses(*pulses);
     } else if (effects_added_) {
       added("nothing more is found missing", export_command());
+      if (const std::string doubt = map_in_doubt(in_.rung_diagnosis); !doubt.empty()) note(doubt);
     } else {
       nothing_missing(d);
     }
@@ -383,7 +384,9 @@ class VerdictBuilder {
   void nothing_missing(const Discovery& d) {
     if (const std::string why = why_nothing_is_known(*fit_); !why.empty())
       return say(VerdictKind::not_decided, "whether an effect is missing cannot be said: " + why, command("open"));
-    if (const std::string doubt = motion_in_doubt(in_.comparison); !doubt.empty()) note(doubt);
+    for (const std::string& doubt : {motion_in_doubt(in_.comparison), map_in_doubt(in_.diagnosis)}) {
+      if (!doubt.empty()) note(doubt);
+    }
     const std::size_t tested_alone = effects_tested(d) + curves_tested(d);
     const std::string tested =
         "no effect is found missing" + (tested_alone == 0   ? std::string(", but none of the library was tested")

@@ -30,6 +30,14 @@ std::string why_nothing_is_known(const Fit& fit) {
   return compared && !follows ? "the fitted model predicts the motion no better than its mean does" : "";
 }
 
+std::string map_in_doubt(const Diagnosis* diagnosis) {
+  constexpr double significant = 0.01;
+  if (diagnosis == nullptr || diagnosis->maps.empty() || diagnosis->maps.front().p_corrected > significant) return "";
+  const ForceMap& map = diagnosis->maps.front();
+  return fmt::format("though no effect is found, the missing {} against {} is significant ({})", map.port, map.quantity,
+                     p_equals(map.p_corrected));
+}
+
 std::string motion_in_doubt(const Comparison* comparison) {
   constexpr double significant = 0.01;
   if (comparison == nullptr || !comparison->motion || comparison->motion->p_value > significant) return "";

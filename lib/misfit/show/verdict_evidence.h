@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "misfit/data/comparison.h"
+#include "misfit/data/diagnosis.h"
 #include "misfit/data/fit.h"
 #include "misfit/data/ladder.h"
 
@@ -20,6 +21,10 @@ namespace misfit {
 /// That the fitted model does not make the statistics of the measured motion, though no effect is found missing; empty: it does, or they
 /// were not compared (nullptr: not at all).
 [[nodiscard]] std::string motion_in_doubt(const Comparison* comparison);
+
+/// That a map of a model's missing force is significant at 1 %, though no effect is found missing; empty: none is, or none was made
+/// (nullptr).
+[[nodiscard]] std::string map_in_doubt(const Diagnosis* diagnosis);
 
 /// Parameters of the study's own model that it knew, to a third at least, and of which the last model knows nothing any more: sigma above
 /// the value, then and now. What was added does what they did: "T_tau is no longer determined beside what was added: (2.1 ± 6.2)e6 s".
