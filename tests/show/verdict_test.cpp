@@ -155,13 +155,13 @@ TEST(Verdict, NothingMissingIsDoubtedWhereAMapOfTheMissingForceIsSignificant) {
   Case c;
   c.discovery = searched({candidate("drag", 0.9, false)}, SearchOutcome::none_missing, "");
   c.fail_at_rest();
-  EXPECT_THAT(c.verdict().notes, Contains("Though no effect is found, the missing dw/dt against w is significant (p = 1e-20)."));
+  EXPECT_THAT(c.verdict().notes, Contains("All the same, the missing dw/dt against w is significant (p = 1e-20)."));
   c.add_effect();
   c.rung_diagnosis = c.diagnosis;
   c.rung_diagnosis->maps.front().p_corrected = 0.004;
-  EXPECT_THAT(c.verdict().notes, Contains("Though no effect is found, the missing dw/dt against w is significant (p = 0.004)."));
+  EXPECT_THAT(c.verdict().notes, Contains("All the same, the missing dw/dt against w is significant (p = 0.004)."));
   c.rung_diagnosis->maps.front().p_corrected = 0.4;
-  EXPECT_THAT(c.verdict().notes, Not(Contains(HasSubstr("Though no effect is found"))));
+  EXPECT_THAT(c.verdict().notes, Not(Contains(HasSubstr("All the same"))));
 }
 
 TEST(Verdict, WhatCouldNotBeToldFromAnEffectWhenItWasAddedIsSaidWithItsValues) {

@@ -34,8 +34,7 @@ std::string map_in_doubt(const Diagnosis* diagnosis) {
   constexpr double significant = 0.01;
   if (diagnosis == nullptr || diagnosis->maps.empty() || diagnosis->maps.front().p_corrected > significant) return "";
   const ForceMap& map = diagnosis->maps.front();
-  return fmt::format("though no effect is found, the missing {} against {} is significant ({})", map.port, map.quantity,
-                     p_equals(map.p_corrected));
+  return fmt::format("all the same, the missing {} against {} is significant ({})", map.port, map.quantity, p_equals(map.p_corrected));
 }
 
 std::string motion_in_doubt(const Comparison* comparison) {
