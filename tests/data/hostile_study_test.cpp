@@ -130,6 +130,10 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"ForceKey", "[force]\ncorrelation = 1\n", {"study.toml:4", "correlation_time"}},
         Hostile{"NoiseOfAMisspeltKey", "[noise]\nx = { valu = 1 }\n", {"study.toml:4", "unknown key 'valu'", "'value'"}},
         Hostile{"NoiseWithoutValue", "[noise]\nx = { fixed = true }\n", {"study.toml:4", "value", "is missing"}},
+        Hostile{"NoiseFixedBesideAFrequency",
+                "[noise]\nx = { fixed = true, frequency = \"0.1 Hz\" }\n",
+                {"study.toml:4", "fixed", "beside a frequency"}},
+        Hostile{"NoiseOfAFrequencyInSeconds", "[noise]\nx = { frequency = \"8 s\" }\n", {"study.toml:4", "frequency", "Hz"}},
         Hostile{"NoiseOfAnUnknownUnit", "[noise]\nx = \"1 " + long_text() + "\"\n", {"study.toml:4", "unknown unit"}}),
     name_of);
 

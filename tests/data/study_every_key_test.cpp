@@ -44,6 +44,16 @@ camera_distance = "5 cm"
   EXPECT_EQ(given.size(), 8U);
 }
 
+TEST_F(EveryKey, OfNoiseIsRead) {
+  const Study study = read_with("[noise]\nx = { frequency = \"0.13 Hz\" }\ny = { value = 2, fixed = false, frequency = 50 }\nz = 0.1\n");
+  EXPECT_EQ(study.noise.at("x").frequency, 0.13);
+  EXPECT_FALSE(study.noise.at("x").fixed) << "what is white and what is coloured is estimated together";
+  EXPECT_EQ(study.noise.at("y").frequency, 50.0);
+  EXPECT_EQ(study.noise.at("y").sigma.value, 2.0);
+  EXPECT_TRUE(study.noise.at("z").fixed);
+  EXPECT_FALSE(study.noise.at("z").frequency);
+}
+
 TEST_F(EveryKey, OfVideoAndPicturesIsRead) {
   const std::string experiment = "[[experiment]]\nvideo = \"flight.mkv\"\n";
   const Study study = read_with(experiment + R"([camera]

@@ -185,6 +185,12 @@ TEST(Bindings, SensorsAndInputsAreTriedWhereTheSystemHasADefaultForThem) {
   EXPECT_THAT(bindings("quadratic_drag", "parachute_spherical"), ElementsAre(Roles{})) << "its own default stays the only one";
 }
 
+TEST(Bindings, EachOutputMayShowEachInputAtOnce) {
+  EXPECT_THAT(bindings("feedthrough", "test_tanks"),
+              ElementsAre(Roles{}, Roles{{"input", "u"}, {"output", "y1"}}, Roles{{"input", "u"}, {"output", "y2"}}));
+  EXPECT_THAT(bindings("feedthrough", "parachute_spherical"), ElementsAre(Roles{})) << "it has no input";
+}
+
 TEST(Bindings, AClockIsOffOnlyBesideAnotherOne) {
   EXPECT_THAT(bindings("time_offset", "test_tanks"), ElementsAre(Roles{})) << "its input has a clock";
   EXPECT_THAT(bindings("time_offset", "parachute_spherical"), testing::IsEmpty()) << "a motion at another time is as likely";

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <utility>
 
 #include "misfit/fit/filter/filter_error.h"
 #include "misfit/fit/methods.h"
 #include "misfit/fit/shooting/output_error.h"
 #include "misfit/fit/trajectory_start.h"
 #include "tests/fit/decay.h"
+#include "tests/fit/first_order.h"
 #include "tests/fit/planar_model.h"
 
 namespace misfit {
@@ -193,6 +196,55 @@ TEST(KnownNoise, OfReadingsInWholeStepsIsNoLessThanTheirRounding) {
   EXPECT_LT(fit.parameters.at("a").sigma, 0.05);
   ASSERT_TRUE(fit.facts.contains("white noise of y"));
   EXPECT_NE(fit.facts.at("white noise of y").find("whole steps of 0.05 V"), std::string::npos) << fit.facts.at("white noise of y");
+}
+
+/// Output of x' = u − x, read with white noise beside waves: a resonance of 0.35 Hz, exactly sampled as an AR(2) process.
+Signals under_waves(double sigma) {
+  constexpr double step = 0.1, zeta = 0.08, omega = 2.0 * std::numbers::pi * 0.35;
+  constexpr std::size_t samples = 3000;
+  const double damped = omega * std::sqrt(1.0 - zeta * zeta), decay = std::exp(-zeta * omega * step);
+  const double first = 2.0 * decay * std::cos(damped * step), second = -decay * decay;
+  // Variance of y_k = first y_(k-1) + second y_(k-2) + e_k over that of e (Box, Jenkins, Time Series Analysis, 3.2.4).
+  const double growth = (1.0 - second) / ((1.0 + second) * ((1.0 - second) * (1.0 - second) - first * first));
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal;
+  Signals out;
+  out.name = "ship";
+  out.measured = {{"y", "V", {}, 0.0}};
+  out.inputs = {{"u", "V", {}, 0.0}};
+  double x = 0.0, wave = 0.0, before = 0.0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double u = (i / 60) % 2 == 0 ? 0.2 : -0.2;
+    out.t.push_back(step * static_cast<double>(i));
+    out.inputs[0].values.push_back(u);
+    out.measured[0].values.push_back(x + wave + testing_first_order::noise * normal(random));
+    x = u + (x - u) * std::exp(-step);
+    const double next = first * wave + second * before + sigma / std::sqrt(growth) * normal(random);
+    before = std::exchange(wave, next);
+  }
+  return out;
+}
+
+/// Without it the random force is taken for what makes the waves, and the system for faster than it is.
+TEST(KnownNoise, WavesInAnOutputAreFoundAboutTheFrequencyThatIsGiven) {
+  const auto registry = registry_with(testing_first_order::one_output);
+  const std::vector<Signals> experiments{under_waves(0.1)};
+  const auto fit_at = [&](double frequency) {
+    Model model = assemble(request_of("text"), *registry);
+    model.known_noise = {KnownNoise{0.0, false, frequency}};
+    FilterOptions one;
+    one.threads = 1;
+    return filter_error(trajectory_start(model, experiments).from, experiments, one).fit;
+  };
+  const Fit unaware = fit_at(0.0), aware = fit_at(0.3);
+  ASSERT_EQ(aware.status, FitStatus::converged) << aware.message;
+  EXPECT_GT(aware.loglik.value(), unaware.loglik.value() + 20.0);
+  const auto near = [](const Estimate& e, double truth) { return std::abs(e.value - truth) < 4.0 * e.sigma; };
+  EXPECT_TRUE(near(aware.noise.at("y_coloured_frequency"), 0.35)) << aware.noise.at("y_coloured_frequency").value;
+  EXPECT_NEAR(aware.noise.at("y_coloured").value, 0.1, 0.02);
+  EXPECT_TRUE(near(aware.parameters.at("a"), 1.0)) << aware.parameters.at("a").value;
+  EXPECT_TRUE(near(aware.parameters.at("b"), 1.0)) << aware.parameters.at("b").value;
+  EXPECT_LT(aware.parameters.at("a").sigma, 0.1);
 }
 
 }  // namespace

@@ -377,6 +377,16 @@ TEST(Recording, OneTimeThatIsWrongLeavesItsRowOutAndDoesNotSplitTheRecording) {
   }
 }
 
+TEST(Recording, TimesOfWhichMostAreThatOfTheRowBeforeAreNoTime) {
+  try {
+    survey(rows("t_s,y", 100, [](int k) { return fmt::format("{},{}", k / 10, std::sin(0.3 * k)); }));
+    FAIL() << "whole seconds of a recording at 10 Hz";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("90 of 100 rows have the time of the row before"));
+    EXPECT_THAT(error.what(), HasSubstr("--time NAME"));
+  }
+}
+
 /// An NPY file of records of t and y.
 std::string npy(const std::vector<std::array<double, 2>>& records) {
   std::string head = fmt::format("{{'descr': [('t', '<f8'), ('y', '<f8')], 'fortran_order': False, 'shape': ({},), }}", records.size());

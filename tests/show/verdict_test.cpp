@@ -801,7 +801,11 @@ TEST(Verdict, OfSomethingUnknownTheNearestEffectOfTheLibraryIsNamedWithWhatItLea
   EXPECT_THAT(c.verdict().notes,
               ElementsAre("Of the library rate_limit comes nearest (drop 258.9), and leaves an unknown surface dw/dt(w, U).",
                           testing::StartsWith("Look where")));
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor") << "nothing says that it predicts better";
+  c.discovery->candidates.front().held_out_gain = 3.0;
   EXPECT_EQ(c.verdict().next, "misfit add configs/motor rate_limit");
+  c.add_effect();
+  EXPECT_EQ(c.verdict().next, "misfit open configs/motor") << "--auto has looked for more";
 }
 
 TEST(Verdict, OfACurveThatWasRefusedItSaysWhatDecidedAndWhatIsNext) {
@@ -836,6 +840,23 @@ TEST(Verdict, ACurveOfUnknownFormThatWasAddedIsCalledWhatItIsACurveOf) {
               testing::StartsWith("A force on dw/dt that depends on w (unknown_force, a curve) was missing: with it"));
   last.roles.reset();  // of an older file
   EXPECT_THAT(c.verdict().sentence, testing::StartsWith("unknown_force was missing"));
+  c.discovery = searched({}, SearchOutcome::unknown_form, "");
+  c.discovery->unexplained_port = "dw/dt", c.discovery->unexplained_quantity = "time";
+  EXPECT_THAT(c.verdict().sentence, testing::StartsWith("unknown_force explains a part of what is missing")) << "a curve takes up anything";
+}
+
+/// What the sentence says is not said again in the list below it.
+TEST(Verdict, AnErrorOfTheSentenceIsNotListed) {
+  Case c;
+  c.add_effect();
+  const Verdict v = c.verdict();
+  ASSERT_FALSE(v.errors.empty());
+  const std::string said = v.errors.front().what() + ": ";
+  const std::string text = as_text(blocks_of(v));
+  EXPECT_THAT(v.sentence, HasSubstr(v.errors.front().what()));
+  EXPECT_THAT(text, Not(HasSubstr(said)));
+  ASSERT_GT(v.errors.size(), 1U);
+  EXPECT_THAT(text, HasSubstr(v.errors.back().what() + ": "));
 }
 
 TEST(Verdict, AnErrorOfUnknownFormIsNotCalledAForce) {

@@ -160,13 +160,22 @@ constexpr Known known_units[] = {
     {"1", 1.0, no_dimension},
 };
 
+/// Of what people write for a unit that has another name here.
+std::string hint_for(std::string_view name, const std::vector<std::string>& names) {
+  if (name == "C" || name == "°C") return " — degC is of temperatures, A s of charges";
+  if (name == "Ah" || name == "mAh") return " — a charge: A h";
+  if (name.find_first_of("()[]") != std::string_view::npos)
+    return " — units have no brackets: what is below a fraction bar stands behind a / of its own, as V/A/s";
+  return suggest(name, names);
+}
+
 const Known& find_unit(std::string_view name, std::string_view whole) {
   const auto it = std::find_if(std::begin(known_units), std::end(known_units), [&](const Known& k) { return name == k.name; });
   if (it != std::end(known_units)) return *it;
   std::vector<std::string> names;
   for (const Known& k : known_units) names.emplace_back(k.name);
   const std::string inside = name == whole ? "" : " in '" + shown(whole) + "'";
-  throw InputError("unknown unit '" + shown(name) + "'" + inside + suggest(name, names));
+  throw InputError("unknown unit '" + shown(name) + "'" + inside + hint_for(name, names));
 }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }

@@ -131,6 +131,8 @@ struct InitialStudy {
 struct NoiseStudy {
   config::Number sigma;  ///< as written (unit checked by the model)
   bool fixed = true;     ///< false: where the estimation starts
+  /// [Hz] Where coloured noise of it is looked for: the middle of a band of waves, hum, sway. Then a sigma need not be given: 0.
+  std::optional<double> frequency;
   Source where;
 };
 

@@ -297,9 +297,12 @@ std::vector<KeyGroup> noise_groups() {
        {{.name = "OUTPUT", .type = Type::other, .unit = "of the output", .otherwise = "estimated", .form = "number or table", .any = true,
          .meaning = "A number: the standard deviation of its white noise, fixed in every method that weighs outputs by it."}}},
       {"noise.NAME", "The same, fixed or as a start.",
-       {{.name = "value", .type = Type::number, .unit = "of the output", .otherwise = "required", .least = 0.0, .above = true,
-         .meaning = "Standard deviation."},
-        {.name = "fixed", .type = Type::flag, .fallback = flag_text(NoiseStudy{}.fixed), .meaning = "Fixed there, or estimated from there."}}}};
+       {{.name = "value", .type = Type::number, .unit = "of the output", .otherwise = "required where there is no frequency", .least = 0.0,
+         .above = true, .meaning = "Standard deviation."},
+        {.name = "fixed", .type = Type::flag, .fallback = flag_text(NoiseStudy{}.fixed), .meaning = "Fixed there, or estimated from there."},
+        {.name = "frequency", .type = Type::number, .unit = "Hz", .otherwise = "well above the motion", .least = 0.0, .above = true,
+         .meaning = std::string("Middle of a band of coloured noise in the output, as waves, hum or a mast that sways make it: ") +
+                    random_force_estimator().name + " estimates it from half of this to 3.3 times, beside white noise that is not fixed."}}}};
 }
 
 std::vector<KeyGroup> force_groups() {

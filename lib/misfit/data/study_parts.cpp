@@ -161,6 +161,20 @@ void read_force(const Section& root, Study& study) {
   force.finish();
 }
 
+void read_noise_table(const DescribedSection& table, NoiseStudy& out) {
+  out.frequency = table.value("frequency");
+  out.fixed = *table.flag("fixed") && !out.frequency;
+  if (out.frequency && table.has("fixed") && *table.flag("fixed"))
+    table.fail("fixed", "is true beside a frequency: what is white and what is coloured is estimated together");
+  if (table.has("value")) {
+    out.sigma = number_as_written(table, "value");
+  } else if (!out.frequency) {
+    table.finish();  // a key that is none comes first
+    table.fail("value", "is missing: a standard deviation");
+  }
+  table.finish();
+}
+
 void read_noise(const Section& root, Study& study) {
   const auto noise = root.table("noise");
   if (!noise) return;
@@ -169,13 +183,8 @@ void read_noise(const Section& root, Study& study) {
     out.where = noise->where(output);
     if (noise->is_table(output)) {
       const DescribedSection table = described(*noise, output, "noise.NAME");
-      out.fixed = *table.flag("fixed");
-      if (!table.has("value")) {
-        table.finish();  // a key that is none comes first
-        table.fail("value", "is missing: a standard deviation");
-      }
-      out.sigma = number_as_written(table, "value");
-      table.finish();
+      read_noise_table(table, out);
+      if (!table.has("value")) continue;
     } else {
       out.sigma = number_as_written(*noise, output);
     }

@@ -33,7 +33,9 @@ Measure measure_of(const std::string& unit) {
   Measure out;
   out.unit = parse_unit(unit);
   if (std::abs(out.unit.to_si - 1.0) > 1e-12 || out.unit.offset != 0.0) {
-    throw InputError("[" + unit + "] is not an SI unit: formulas are computed in SI, declare it so (data and values may have any unit)");
+    const std::string si = unit_in_si(unit);
+    throw InputError("[" + unit + "] is not an SI unit: formulas are computed in SI, declare it as \"" + (si.empty() ? "-" : si) +
+                     "\"; data may have any unit, and so may values, as \"5 " + unit + "\"");
   }
   for (const auto& [symbol, power] : unit_symbols(unit)) multiply(out, {Unit{}, {{symbol, 1.0}}, false, false}, power);
   return out;

@@ -115,7 +115,7 @@ void Assembler::add_noise() {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
       throw InputError(request.where, "[noise]: system '" + system().key + "' has no output '" + shown(name) + "'" + suggest(name, names));
-    model_.known_noise[found - names.begin()] = {request.sigma, request.fixed};
+    model_.known_noise[found - names.begin()] = {request.sigma, request.fixed, request.frequency};
   }
 }
 

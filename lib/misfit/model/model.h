@@ -61,6 +61,7 @@ struct ModelRequest {
     double sigma = 0.0;  ///< SI
     bool fixed = true;
     Source where;
+    double frequency = 0.0;  ///< KnownNoise::frequency
   };
   std::map<std::string, NoiseRequest> noise;  ///< of outputs
   std::optional<double> force_time;           ///< of the random force [s], fixed; 0: white
@@ -112,8 +113,9 @@ struct BoundEffect {
 
 /// What is known of the white measurement noise of an output.
 struct KnownNoise {
-  double sigma = 0.0;  ///< [unit of the output]; 0: nothing
-  bool fixed = false;  ///< fixed in every fit; else a start
+  double sigma = 0.0;      ///< [unit of the output]; 0: nothing
+  bool fixed = false;      ///< fixed in every fit; else a start
+  double frequency = 0.0;  ///< [Hz] about which coloured noise is looked for; 0: well above the motion
 };
 
 /// An input whose past an effect reads: Role::late_by.

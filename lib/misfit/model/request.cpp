@@ -156,7 +156,7 @@ void read_force(const Study& study, const SystemSpec& spec, ModelRequest& reques
 
 void read_noise(const Study& study, const SystemSpec& spec, ModelRequest& request) {
   for (const auto& [name, noise] : study.noise) {
-    request.noise[name] = {noise.sigma.value, noise.fixed, noise.where};
+    request.noise[name] = {noise.sigma.value, noise.fixed, noise.where, noise.frequency.value_or(0.0)};
     for (const auto& output : spec.outputs) {
       const bool unlike =
           output.name == name && !noise.sigma.unit.empty() && !parse_unit(noise.sigma.unit).same_dimension(parse_unit(output.unit));

@@ -18,8 +18,17 @@ bool is_out_of_order(const std::vector<double>& t, std::size_t i) {
   return i > 0 && i + 1 < t.size() && t[i - 1] < t[i + 1] && (t[i] < t[i - 1] || t[i] > t[i + 1]);
 }
 
+/// A time of too few digits, or a column that is none.
+void refuse_mostly_repeated(std::size_t rows, std::size_t repeated, const std::string& source) {
+  if (2 * repeated > rows)
+    throw InputError({source, 0, 0},
+                     fmt::format("{} of {} rows have the time of the row before: is another column the time (--time NAME), or "
+                                 "was it written with too few digits?",
+                                 repeated, rows));
+}
+
 /// Rows in which time runs forward.
-void cut(const std::vector<double>& t, const std::vector<double>& segments, RecordingTime& out) {
+void cut(const std::vector<double>& t, const std::vector<double>& segments, const std::string& source, RecordingTime& out) {
   std::size_t without = 0, repeated = 0, backward = 0, wrong = 0;
   std::map<double, std::size_t> piece_of;  // the last of each segment
   for (std::size_t i = 0; i < t.size(); ++i) {
@@ -43,6 +52,7 @@ void cut(const std::vector<double>& t, const std::vector<double>& segments, Reco
     if (is_new || runs_back) out.pieces.emplace_back();
     out.pieces[own->second].push_back(i);
   }
+  refuse_mostly_repeated(t.size(), repeated, source);
   if (without > 0) out.remarks.push_back(counted(without, "row without a time is left out", "rows without a time are left out"));
   if (wrong > 0)
     out.remarks.push_back(counted(wrong, "row whose time is not between those of the rows before and after it is left out",
@@ -60,7 +70,7 @@ void leave_out_short_ones(std::size_t rows, const std::string& source, Recording
   constexpr std::size_t fewest = 10;
   const std::size_t before = out.pieces.size();
   std::erase_if(out.pieces, [](const auto& piece) { return piece.size() < fewest; });
-  if (out.pieces.empty()) throw InputError({source, 0, 0}, fmt::format("{} rows: too few to be a recording", rows));
+  if (out.pieces.empty()) throw InputError({source, 0, 0}, fmt::format("{} rows: too few to be a recording, of {} at least", rows, fewest));
   if (out.pieces.size() < before)
     out.remarks.push_back(
         fmt::format("{} with fewer than {} rows: left out", counted(before - out.pieces.size(), "recording", "recordings"), fewest));
@@ -93,7 +103,7 @@ void find_gaps(const std::vector<double>& t, RecordingTime& out) {
 
 RecordingTime recording_time(const std::vector<double>& t, const std::vector<double>& segments, const std::string& source) {
   RecordingTime out;
-  cut(t, segments, out);
+  cut(t, segments, source, out);
   leave_out_short_ones(t.size(), source, out);
   find_gaps(t, out);
   return out;

@@ -14,7 +14,7 @@ namespace {
 
 using Put = std::function<void(Figure)>;
 
-constexpr double part_of_force = 10.0;  // [s], of a recording over twice as long
+constexpr std::size_t part_of_force = 600;  // samples
 
 /// Maps worth a picture: those that stand out, at least three, at most eight. They come sorted.
 std::size_t maps_to_draw(const std::vector<ForceMap>& maps) {
@@ -40,8 +40,8 @@ void draw_innovations(const Diagnosis& d, const Put& draw) {
 void draw_force(const Diagnosis& d, const Put& draw) {
   for (const MissingForce& missing : d.missing) {
     draw(missing_force_figure(missing, std::nullopt));
-    if (!missing.t.empty() && missing.t.back() - missing.t.front() > 2.0 * part_of_force && !missing.force.empty())
-      draw(missing_force_figure(missing, typical_interval(missing.t, missing.force.front(), part_of_force)));
+    if (missing.force.empty()) continue;
+    if (const auto part = part_to_draw(missing.t, missing.force.front(), part_of_force)) draw(missing_force_figure(missing, part));
     const std::string quantity = d.maps.empty() ? "" : d.maps.front().quantity;
     if (std::find(missing.quantities.begin(), missing.quantities.end(), quantity) != missing.quantities.end())
       draw(missing_force_by_figure(missing, quantity));
@@ -68,9 +68,7 @@ void draw_added_force(const Discovery& d, const Diagnosis& diagnosis, const Put&
   for (const AddedForce& added : accepted->added) {
     for (const MissingForce& missing : diagnosis.missing) {
       if (missing.experiment != added.experiment) continue;
-      const bool is_long = missing.t.size() > 1 && missing.t.back() - missing.t.front() > 2.0 * part_of_force;
-      draw(added_force_figure(missing, *accepted,
-                              is_long ? std::optional(typical_interval(added.t, added.force.front(), part_of_force)) : std::nullopt));
+      draw(added_force_figure(missing, *accepted, part_to_draw(added.t, added.force.front(), part_of_force)));
     }
   }
 }

@@ -215,6 +215,14 @@ Interval typical_interval(const std::vector<double>& t, const std::vector<double
   return best;
 }
 
+std::optional<Interval> part_to_draw(const std::vector<double>& t, const std::vector<double>& values, std::size_t samples) {
+  constexpr std::ptrdiff_t fewest = 20;
+  if (t.size() <= 2 * samples) return std::nullopt;
+  const Interval out = typical_interval(t, values, static_cast<double>(samples) * usual_step(t));
+  const auto within = std::upper_bound(t.begin(), t.end(), out.to) - std::lower_bound(t.begin(), t.end(), out.from);
+  return within < fewest || within == std::ssize(t) ? std::nullopt : std::optional(out);
+}
+
 Figure motion_figure(const std::string& method, const ChannelPrediction& channel, const std::optional<Interval>& zoom) {
   const ChannelPrediction c = zoom ? cut(channel, *zoom) : channel;
   Figure figure;

@@ -45,6 +45,10 @@ struct Interval {
 /// An interval of about `length` seconds in the middle third of the record where most samples are finite.
 [[nodiscard]] Interval typical_interval(const std::vector<double>& t, const std::vector<double>& values, double length);
 
+/// The part of a series that is drawn by itself, so that one sees how samples follow each other: a typical_interval() of about `samples`
+/// usual steps. nullopt: the series is not twice as long, or has gaps wherever one looks.
+[[nodiscard]] std::optional<Interval> part_to_draw(const std::vector<double>& t, const std::vector<double>& values, std::size_t samples);
+
 /// Autocorrelation of the residuals of one channel over their predicted sigma (estimation part), with the ± 1.96/sqrt(n) band that white
 /// residuals keep to at 95 % of the lags. `max_lag` samples.
 [[nodiscard]] Figure autocorrelation_figure(const std::string& method, const ChannelPrediction& channel, std::size_t max_lag = 60);

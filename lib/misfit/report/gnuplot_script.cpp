@@ -124,6 +124,8 @@ int digits_of_tics(const Range& range) {
 }
 
 std::string tics_format(const Range& range, const std::string& usual) {
+  constexpr double least = 1e-4;  // below, gnuplot's own formats write out six decimals and no more
+  if (std::max(std::abs(range[0]), std::abs(range[1])) < least) return "%.3g";
   const int digits = digits_of_tics(range);
   return digits > 0 ? fmt::format("%.{}g", digits) : usual;
 }

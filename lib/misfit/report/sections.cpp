@@ -15,13 +15,9 @@
 namespace misfit::report {
 namespace {
 
-constexpr double zoom_seconds = 5.0;
-/// A part much shorter than the whole, with enough samples to see how they follow each other.
-bool worth_a_zoom(const std::vector<double>& t, const Interval& zoom) {
-  constexpr std::ptrdiff_t least = 20;
-  const auto within = std::upper_bound(t.begin(), t.end(), zoom.to) - std::lower_bound(t.begin(), t.end(), zoom.from);
-  return t.size() > 1 && t.back() - t.front() > 2.0 * zoom_seconds && within >= least;
-}
+constexpr std::size_t samples_of_part = 300;
+
+Interval whole_of(const std::vector<double>& t) { return t.empty() ? Interval{} : Interval{t.front(), t.back()}; }
 
 constexpr std::string_view of_data = "data: ";  // begins the name of a fact of a fit (Fit::facts) that says what was done to an experiment
 
@@ -93,7 +89,7 @@ void measured_section(const ReportInput& input, Page& page, const Draw& draw) {
   for (const ExperimentInput& experiment : input.experiments) {
     if (!experiment.attitude) continue;
     const Attitude& a = *experiment.attitude;
-    draw(orientation_figure(experiment.name, a, typical_interval(a.t, a.theta_mean, zoom_seconds)));
+    draw(orientation_figure(experiment.name, a, part_to_draw(a.t, a.theta_mean, samples_of_part).value_or(whole_of(a.t))));
     draw(history_figure(experiment.name, a));
     draw(path_figure(experiment.name, a));
     draw(histogram_figure(experiment.name, a));
@@ -110,9 +106,8 @@ void prediction_section(const ModelResults& model, Page& page, const Draw& draw)
   page.section("Predicted motion and residuals" + model.subject.note);
   for (const Fit& fit : *model.fits) {
     for (const ChannelPrediction& channel : fit.predictions) {
-      const Interval zoom = typical_interval(channel.t, channel.measured, zoom_seconds);
       put(motion_figure(fit.method, channel, std::nullopt));
-      if (worth_a_zoom(channel.t, zoom)) put(motion_figure(fit.method, channel, zoom));
+      if (const auto part = part_to_draw(channel.t, channel.measured, samples_of_part)) put(motion_figure(fit.method, channel, part));
       put(autocorrelation_figure(fit.method, channel));
       put(residual_histogram_figure(fit.method, channel));
     }

@@ -44,7 +44,8 @@ Glossary further_glossary() {
       {"curve", "a parameter as a function of a quantity: a cubic spline with a roughness penalty"},
       {"driven", "motion excited by more than the model has: residuals are correlated, or a random force is estimated"},
       {"coloured noise",
-       "the part of a channel's measurement noise that is not white: a damped resonance with a standard deviation and a frequency"},
+       "the part of a channel's measurement noise that is not white: a damped resonance with a standard deviation and a frequency. "
+       "It is looked for well above the motion; of waves or hum whose frequency is known: [noise] of the study, frequency"},
       {"trim", "the angle, or other level, at which the static force of a curve is 0 and pulls back on both sides"},
       {"samples ahead",
        "a prediction from a state that was corrected by the measurements so far, so many samples into the future; the error of one sample "

@@ -334,9 +334,9 @@ class VerdictBuilder {
     const Candidate* nearest = nearest_of_library(d);
     const bool left_by_curve = std::any_of(d.unexplained_effects.begin(), d.unexplained_effects.end(),
                                            [this](const EffectPlace& place) { return on_ladder(place); });  // between its knots, too
-    const std::string next = curve != nullptr                       ? command("add", curve->effect) + at_place(curve->roles)
-                             : nearest != nullptr && !left_by_curve ? add_by_hand(*nearest)
-                                                                    : command("open");
+    const std::string next = curve != nullptr ? command("add", curve->effect) + at_place(curve->roles)
+                             : nearest != nullptr && !left_by_curve && !effects_added_ ? add_rejected(*nearest)
+                                                                                       : command("open");
     effects_added_ ? added(words, next, VerdictKind::unknown_form) : say(VerdictKind::unknown_form, words, next);
     if (!d.unexplained_alike.empty()) note("these data cannot distinguish it from " + join_words(d.unexplained_alike));
     if (nearest != nullptr)

@@ -13,9 +13,14 @@ namespace {
 
 /// What the likelihood says of what a rung added. Of the hold: it is late by half a sampling interval, which is the hold of an input and
 /// nothing that is missing. A part: something remained beside it, and still does at the end of the ladder, so that it may only look like
-/// what is missing. Far ahead: what is held out is predicted worse one sample ahead, and the free run is better. Untested: no likelihood
-/// compares it with the model before (another system, or a comparison that was cut off).
+/// what is missing; so may a curve of unknown form. Far ahead: what is held out is predicted worse one sample ahead, and the free run is
+/// better. Untested: no likelihood compares it with the model before (another system, or a comparison that was cut off).
 enum class Evidence { needed, of_the_hold, a_part, far_ahead, untested, predicts_worse, chance };
+
+/// A curve: it may take up a part of anything.
+bool is_of_unknown_form(const Rung& rung) {
+  return rung.added == "unknown_force" || rung.added == "unknown_error" || rung.added == "unknown_variation";
+}
 
 Evidence evidence_for(const Rung& rung, bool something_remains) {
   if (!rung.actual_drop) return Evidence::untested;
@@ -23,7 +28,8 @@ Evidence evidence_for(const Rung& rung, bool something_remains) {
   if (rung.holds) return Evidence::of_the_hold;
   if (!is_seen_in_measurements(rung) && rung.held_out_gain && *rung.held_out_gain < 0.0)
     return rung.stays_for_free_run ? Evidence::far_ahead : Evidence::predicts_worse;
-  return rung.remained && something_remains ? Evidence::a_part : Evidence::needed;
+  const bool takes_up_a_rest = rung.remained || is_of_unknown_form(rung);
+  return takes_up_a_rest && something_remains ? Evidence::a_part : Evidence::needed;
 }
 
 /// What is said of one effect, and of several.

@@ -238,10 +238,12 @@ void test_innovations(const FilterEstimate& estimate, Fit& fit) {
       }
       const WhitenessTest test = whiteness(on_even_grid(estimate.data[e].signals->t, innovations), 1, last_lag);
       if (!(test.p_value < improbable) || std::abs(test.largest) < least_correlation) continue;
-      fit.warnings.push_back("the innovations of " + outputs[o].name + " in '" + estimate.data[e].signals->name +
-                             "' are not white (Ljung-Box " + p_equals(test.p_value) + ", largest autocorrelation " +
-                             format_value(std::round(1000.0 * test.largest) / 1000.0) + " at lag " + std::to_string(test.largest_lag) +
-                             "): the process or noise model is incomplete; standard errors assume whiteness and may be too small");
+      fit.warnings.push_back(
+          "the innovations of " + outputs[o].name + " in '" + estimate.data[e].signals->name + "' are not white (Ljung-Box " +
+          p_equals(test.p_value) + ", largest autocorrelation " + format_value(std::round(1000.0 * test.largest) / 1000.0) + " at lag " +
+          std::to_string(test.largest_lag) +
+          "): the process or noise model is incomplete (of waves or hum in an output: frequency of [noise]); standard errors assume "
+          "whiteness and may be too small");
     }
   }
 }

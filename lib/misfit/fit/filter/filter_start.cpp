@@ -211,7 +211,8 @@ void mark_known(const FilterModel& model, FilterNoise& usual) {
 }
 
 /// White noise and coloured noise as large, well above the motion (circular frequency `motion`), which the model itself must explain;
-/// pack() lets the coloured noise's frequency down to half of this. A sensor with a clock of its own that shows nothing so fast has none.
+/// pack() lets the coloured noise's frequency down to half of this. Where a study names a frequency: there. A sensor with a clock of its
+/// own that shows nothing so fast has none.
 ChannelNoise usual_channel(const Model& model, const Signals& signals, std::size_t o, double motion) {
   const KnownNoise& known = model.known_noise[o];
   const OutputSpec& output = model.system->spec().outputs[o];
@@ -223,6 +224,10 @@ ChannelNoise usual_channel(const Model& model, const Signals& signals, std::size
   if (!(out.white > 0.0)) out.white = output.noise > 0.0 ? output.noise : 1.0;
   out.coloured_frequency = std::min(std::max(share_of_rate / step, least), highest_share / step);
   out.no_coloured = out.coloured_frequency < least && have_own_clocks(signals);
+  if (known.frequency > 0.0) {
+    out.coloured_frequency = known.frequency;
+    out.no_coloured = false;
+  }
   out.coloured = known.fixed || out.no_coloured ? 1e-3 * out.white : out.white;
   return out;
 }

@@ -19,14 +19,14 @@ export class Unreachable extends Error {}
 export async function get(what, parameters = {}) {
   const { lists, answers } = await unpacked;
   const answer = answers[`${what}?${new URLSearchParams(parameters)}`];
-  if (answer === undefined) throw new Refused('This view found no room in the report; `misfit open` shows it.');
+  if (answer === undefined) throw new Refused('This view found no room in the report; “misfit open” shows it.');
   return whole(answer, lists);
 }
 /** Nothing changes in a document. */
 export const kept = get;
 export function outdate() {}
 export async function post() {
-  throw new Refused('A report can only be read; `misfit open` shows the study.');
+  throw new Refused('A report can only be read; “misfit open” shows the study.');
 }
 
 /** The document is read, or explored: one of both is seen. On paper it is always the document. */

@@ -69,7 +69,7 @@ const trouble = element('p', { class: 'warning' });
 function hindered(error) {
   const lost = error instanceof Unreachable;
   if (lost) document.body.dataset.lost = 'yes';
-  const text = lost ? 'misfit does not answer any more: start `misfit open` again and use the address that it prints.' : String(error?.message ?? error);
+  const text = lost ? 'misfit does not answer any more: start “misfit open” again and use the address that it prints.' : String(error?.message ?? error);
   if (trouble.textContent !== text) trouble.textContent = text;
   if (!trouble.isConnected) at('alerts').append(trouble);
 }
@@ -111,7 +111,7 @@ function showHead() {
   for (const sentence of outdated) alerts.append(element('p', { class: 'warning' }, sentence));
   const most = here.state.mostSamples ?? 0; // of the report; 0: all
   at('thinned').hidden = most === 0;
-  at('thinned').textContent = `Recordings of more than ${most} samples are drawn by their least and largest values; \`misfit open\` draws every sample.`;
+  at('thinned').textContent = `Recordings of more than ${most} samples are drawn by their least and largest values; “misfit open” draws every sample.`;
   if (!verdict) alerts.append(element('p', {}, 'There are no results yet: Run makes them.'));
   showVerdict(verdict?.blocks ?? []);
   at('model').replaceChildren(...models.map((m, k) => element('option', { value: k }, m.added === '' ? "0: the study's own" : `${m.id}: + ${m.added}`)));
@@ -431,7 +431,7 @@ async function showWhere(view, where, current) {
 /** Why pointing at a map marks nothing; '': it does. */
 function withoutSamples(asked) {
   const failed = asked.find((one) => one.status === 'rejected');
-  if (!live) return failed ? 'Its samples are not at hand here; `misfit open` marks them in the motion.' : '';
+  if (!live) return failed ? 'Which samples lie there “misfit open” shows, in the motion.' : '';
   if (failed) return `Its samples cannot be shown: ${failed.reason.message}`;
   return asked.every((one) => one.value === null) ? 'This experiment has no samples of it.' : '';
 }
