@@ -45,7 +45,7 @@ struct Rung {
   std::optional<std::vector<std::string>> alike;  ///< what these data could not tell from it when it was added, as effect_at() says it
   /// By how much its free run is better, in words: why it stays though what is held out is predicted worse one sample ahead.
   std::optional<std::string> stays_for_free_run;
-  std::string note;                               ///< in words
+  std::string note;  ///< in words
 };
 /// Steps of Rung::k_step.
 inline constexpr int kLadderSteps[] = {1, 2, 4, 8, 16, kFarAhead};
