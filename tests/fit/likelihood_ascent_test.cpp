@@ -49,6 +49,7 @@ TEST(TryNoise, ANoiseWithoutADensityIsNotTaken) {
   EXPECT_EQ(ascent.out.noise.channels.front().white, white);
   EXPECT_EQ(ascent.objective, before);
   EXPECT_EQ(ascent.joint().size(), static_cast<Eigen::Index>(1 + ascent.out.noise_fit.logs.size())) << "steps over both blocks may follow";
+  EXPECT_EQ(ascent.out.noise_fit.at_bound.size(), ascent.out.noise_fit.logs.size()) << "and ask which are at a bound";
 }
 
 /// Its bounds and information are those of a noise that the search is not at.

@@ -241,6 +241,7 @@ bool LikelihoodAscent::try_noise(const NoiseFit& fit) {
   const double then = objective;
   if (!std::isfinite(fit.minus_log_density)) {
     out.noise_fit.logs = logs;
+    describe_noise();
     return false;
   }
   out.noise = fit.noise;
