@@ -1,7 +1,11 @@
 #include "misfit/workflow/ladder_candidates.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "misfit/core/display.h"
 #include "misfit/model/registry.h"
 #include "misfit/workflow/ladder.h"
 
@@ -22,6 +26,14 @@ Candidate without_refit(Candidate candidate) {
   candidate.refit_values.clear();
   candidate.refit_log_noise.clear();
   return candidate;
+}
+
+std::string why_undetermined(const Rung& rung) {
+  if (parameters_added(rung) != 1) return "";
+  const auto estimated = std::find_if(rung.parameters.begin(), rung.parameters.end(), [](const auto& p) { return p.second.sigma > 0.0; });
+  if (estimated == rung.parameters.end() || !(estimated->second.sigma > std::abs(estimated->second.value))) return "";
+  const auto& [name, e] = *estimated;
+  return fmt::format("its {} is not determined: {}", name, in_display_unit(e.value, e.unit, e.sigma));
 }
 
 std::vector<double> twice_as_many(const std::vector<double>& knots) {

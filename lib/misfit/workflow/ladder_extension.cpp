@@ -112,6 +112,7 @@ class Extension {
     if (listener_.added) listener_.added(rung);
     if (rung.actual_drop && !reads_steps(ladder_.last())) {
       why_off_ = why_too_little(rung.actual_drop, rung.held_out_gain, parameters_added(rung), families_);
+      if (why_off_.empty()) why_off_ = why_undetermined(rung);
       const bool speaks_for = !why_off_.empty() && free_run_speaks_for(candidate, rung);
       if (why_off_.empty() && free_run == FreeRun::now) why_off_ = ladder_.why_free_run_is_worse();
       if (!why_off_.empty() && !speaks_for) {
