@@ -20,11 +20,12 @@ bool is_out_of_order(const std::vector<double>& t, std::size_t i) {
 
 /// A time of too few digits, or a column that is none.
 void refuse_mostly_repeated(std::size_t rows, std::size_t repeated, const std::string& source) {
-  if (2 * repeated > rows)
+  if (2 * repeated > rows) {
     throw InputError({source, 0, 0},
                      fmt::format("{} of {} rows have the time of the row before: is another column the time (--time NAME), or "
                                  "was it written with too few digits?",
                                  repeated, rows));
+  }
 }
 
 /// Rows in which time runs forward.
