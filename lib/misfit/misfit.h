@@ -38,6 +38,8 @@ class Identification {
   const Rung& add(const std::string& effect) { return ladder_.add(effect, prediction_for(ladder_, effect)); }
   /// The same with the bindings and start values that discovery found.
   const Rung& add(const Candidate& candidate) { return ladder_.add(candidate.effect, candidate); }
+  /// What `discover --auto` does: rungs until nothing more is gained (extend_ladder()).
+  void extend() { extend_ladder(ladder_, registry_); }
   /// The rungs so far.
   [[nodiscard]] const Ladder& ladder() const { return ladder_.ladder(); }
   /// Figures and report.html of the study with its ladder; the path of the page.

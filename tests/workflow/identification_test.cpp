@@ -19,8 +19,8 @@ class IdentificationOfAnOscillator : public testing::Test {
 
   [[nodiscard]] std::string study() const { return study_.path("study.toml").string(); }
   [[nodiscard]] std::string out(const std::string& name) const { return study_.path(name).string(); }
-  /// "discover --auto" as a loop of one's own.
-  static void extend(Identification& identification) {
+  /// "discover --auto" as a loop of one's own; without comparisons of free runs.
+  static void extend_by_hand(Identification& identification) {
     for (auto next = identification.accepted(identification.discover()); next; next = identification.accepted(identification.discover()))
       identification.add(*next);
   }
@@ -36,10 +36,14 @@ TEST_F(IdentificationOfAnOscillator, LeavesWhatTheVerbsLeaveAndPrintsNothing) {
   testing::internal::CaptureStderr();
   {
     Identification identification({.study = study(), .out = out("library")}, registry_);
-    extend(identification);
+    identification.extend();
     EXPECT_TRUE(fs::exists(identification.report()));
     ASSERT_EQ(identification.ladder().rungs.size(), 2U);
     EXPECT_EQ(identification.ladder().rungs.back().added, "coulomb_friction");
+    Identification by_hand({.study = study(), .out = out("by_hand")}, registry_);
+    extend_by_hand(by_hand);
+    ASSERT_EQ(by_hand.ladder().rungs.size(), 2U);
+    EXPECT_EQ(by_hand.ladder().rungs.back().loglik, identification.ladder().rungs.back().loglik);
   }
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

@@ -43,8 +43,8 @@ class ModelLadder {
   /// Notes why the last rung stays though its predictions of what is held out are worse one sample ahead (why_free_run_is_better()).
   void stays_for_free_run(const std::string& why);
 
-  /// Where output_error of the study's own model has been fitted, as the study asks, and follows the motion, that of the last rung, too:
-  /// errors of free runs before and after.
+  /// Where the study asks for output_error, and that of its own model follows the motion, that of the last rung, too: errors of free runs
+  /// before and after.
   void compare_free_runs();
 
   /// Of what was added, seen from the second horizon: where the study asks for output_error and the model below the last rung

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,16 +20,10 @@ bool follows_the_motion(const Fit& fit) {
                                      [](const ChannelPrediction& p) { return !p.nrmse || *p.nrmse < most; });
 }
 
-bool is_among(const std::vector<std::string>& methods, const std::string& name) {
-  return std::find(methods.begin(), methods.end(), name) != methods.end();
-}
-
-/// By output_error, which has been fitted, or is the one method of the two that the study has.
+/// By output_error, if it is among the methods of the study: what was fitted before must not matter.
 bool asks_for_free_runs(const Session& session) {
-  const std::string trajectory = trajectory_estimator().name;
-  if (!is_among(session.study.methods, trajectory)) return false;
-  return !is_among(session.study.methods, random_force_estimator().name) ||
-         std::filesystem::exists(session.folder.file("fit/" + trajectory + "/fit.json"));
+  const std::vector<std::string>& methods = session.study.methods;
+  return std::find(methods.begin(), methods.end(), trajectory_estimator().name) != methods.end();
 }
 
 /// RMS over the channels of (after/before); 1 where nothing can be compared.
