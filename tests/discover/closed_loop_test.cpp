@@ -64,6 +64,9 @@ TEST(AControllerThatReadsTheNoise, IsNotTakenForSomethingThatIsMissing) {
     const FilterEstimate estimate = estimate_filter(assemble(request, *systems), {}, signals);
     const Discovery found = discover({estimate, request, *systems, signals}, {});
     EXPECT_EQ(found.outcome, SearchOutcome::none_missing) << "seed " << seed << ": " << found.verdict;
+    const bool said = std::any_of(found.not_tried.begin(), found.not_tried.end(),
+                                  [](const NotTried& n) { return n.place.effect == "feedthrough" && n.reason.find("input u moves") == 0; });
+    EXPECT_TRUE(said) << "that it was not looked for";
   }
 }
 

@@ -257,6 +257,36 @@ bool can_be_candidate(const Effect& effect) {
   return has_strength(effect.spec()) && !effect.spec().has_unknown_form() && !driven_by_noise(effect);
 }
 
+/// An input that stays as it is from most samples to the next, in every recording.
+bool is_held(const FilterEstimate& estimate, const std::string& input) {
+  return std::all_of(estimate.data.begin(), estimate.data.end(), [&](const FilterData& data) {
+    const auto& inputs = data.signals->inputs;
+    const auto found = std::find_if(inputs.begin(), inputs.end(), [&](const Signal& s) { return s.name == input; });
+    if (found == inputs.end()) return false;
+    const std::vector<double>& u = found->values;
+    std::ptrdiff_t same = 0;
+    for (std::size_t i = 1; i < u.size(); ++i) same += u[i] == u[i - 1] ? 1 : 0;
+    return 2 * same > std::ssize(u);
+  });
+}
+
+/// Of an effect that shows an input in an output at once: a controller that reads that output's noise sets its input by it at the very
+/// sample, so that in closed loop there is no telling the one from the other (Ljung, System Identification (1999), 13.4: the loop needs a
+/// delay). Empty: it can be looked for.
+std::string why_in_a_loop(const CandidateModel& candidate, const FilterEstimate& estimate) {
+  const BoundEffect& effect = candidate.model.effects.back();
+  const SystemSpec& system = candidate.model.system->spec();
+  if (effect.kind != PortKind::sensor) return "";
+  for (const int quantity : effect.quantities) {
+    if (quantity < 0 || quantity >= std::ssize(system.quantities)) continue;
+    const int input = candidate.model.input_of_quantity(quantity);
+    if (input >= 0 && !is_held(estimate, system.inputs[input].name))
+      return "input " + system.inputs[input].name +
+             " moves at most samples: a controller that reads the noise of an output makes it look as if it showed there at once";
+  }
+  return "";
+}
+
 /// The same reason is given once, for the first of the effect's places.
 void add_not_tried(NotTried added, std::vector<NotTried>& list) {
   const bool known = std::any_of(list.begin(), list.end(),
@@ -296,6 +326,10 @@ CandidateList list_candidates(const FilterEstimate& estimate, const ModelRequest
       try {
         std::optional<CandidateModel> candidate_model = candidate_model_at(estimate, request, registry, {key, roles});
         if (!candidate_model || already_listed(*candidate_model, out.models)) continue;
+        if (const std::string why = why_in_a_loop(*candidate_model, estimate); !why.empty()) {
+          add_not_tried({{key, roles}, why}, out.not_tried);
+          continue;
+        }
         fill(effect, calibration, operating_range, *candidate_model);
         if (std::find(suiting.begin(), suiting.end(), key) == suiting.end()) suiting.push_back(key);
         out.models.push_back(std::move(*candidate_model));
