@@ -1,3 +1,5 @@
+#include <array>
+
 #include "misfit/math/regular.h"
 #include "misfit/model/registry.h"
 
@@ -22,7 +24,7 @@ struct OverflowBetween {
 
   enum Quantity { level };
   /// Neither heat nor a concentration, a speed or a current spills.
-  static constexpr const char* no_levels[] = {"K", "kg/m^3", "mol/m^3", "m/s", "rad/s", "A"};
+  static constexpr std::array no_levels{"K", "kg/m^3", "mol/m^3", "m/s", "rad/s", "A"};
   static constexpr Role quantities[] = {{.name = "level", .unit = "*", .never = no_levels}};
   enum Port { port, to_port };
   static constexpr Role ports[] = {{.name = "port", .unit = "{level}/s"}, {.name = "to_port", .unit = "{level}/s"}};
