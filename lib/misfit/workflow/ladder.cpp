@@ -278,11 +278,6 @@ std::string ModelLadder::relative_study(const Session& session) const {
   return fs::absolute(session.study.file).lexically_normal().lexically_relative(from).generic_string();
 }
 
-void ModelLadder::stays_for_free_run(const std::string& why) {
-  ladder_.rungs.back().stays_for_free_run = why;
-  store();
-}
-
 void ModelLadder::gained_too_little(const std::string& effect, const std::string& why) {
   if (ladder_.rungs.empty()) return;
   std::optional<std::vector<std::string>>& known = ladder_.rungs.back().gained_too_little;

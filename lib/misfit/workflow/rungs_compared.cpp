@@ -81,6 +81,11 @@ std::string ModelLadder::why_free_run_is_better() {
                      100.0 * (1.0 - held_out));
 }
 
+void ModelLadder::stays_for_free_run(const std::string& why) {
+  ladder_.rungs.back().stays_for_free_run = why;
+  store();
+}
+
 void ModelLadder::compare_free_runs() {
   const std::string trajectory = trajectory_estimator().name;
   if (ladder_.rungs.size() < 2 || !asks_for_free_runs(root_)) return;
