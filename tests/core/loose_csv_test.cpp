@@ -120,6 +120,7 @@ TEST(LooseCsv, TakesNamesThatAreGivenWhereTheFileHasNone) {
 }
 
 TEST(LooseCsv, SaysWhatIsWrong) {
+  EXPECT_THAT(refusal(std::string("t[s],u[V]\n1,2\0\0", 15)), HasSubstr("this is no text"));
   EXPECT_THAT(refusal(""), HasSubstr("the file is empty"));
   EXPECT_THAT(refusal("\n \n# only words\n"), HasSubstr("the file is empty"));
   EXPECT_THAT(refusal("y\n1\n2\n"), HasSubstr("one column alone ('y')"));

@@ -127,6 +127,13 @@ TEST(ParseUnit, NamesAnUnknownPartAndTheNearest) {
   expect_parts(message_of<InputError>([] { (void)parse_unit("§"); }), {"unknown unit '§'", "valid: m, mm"});
 }
 
+TEST(ParseUnit, SaysWhatToWriteForWhatHasAnotherNameHere) {
+  const auto refusal = [](const char* text) { return message_of<InputError>([text] { (void)parse_unit(text); }); };
+  expect_parts(refusal("C"), {"unknown unit 'C'", "degC is of temperatures, A s of charges"});
+  expect_parts(refusal("mAh"), {"a charge: A h"});
+  expect_parts(refusal("V/(A s)"), {"units have no brackets", "V/A/s"});
+}
+
 TEST(ParseUnit, RefusesWhatIsNotAUnit) {
   for (const char* text : {"/s", "m/", "m//s", "m**s", "*m", "m^", "m^x", "m^99", "m^99999999999", "^2", "3 m"}) {
     EXPECT_THROW((void)parse_unit(text), InputError) << text;

@@ -427,7 +427,8 @@ TEST(DeclaredSystems, ErrorsNamePlaceAndNearestName) {
   EXPECT_THAT(error_of(replaced(duffing_text, "v = \"gain", "w = \"gain")), HasSubstr("no state 'w'"));
   EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "unused = { unit = \"-\", value = 1 }\ngain = {")),
               HasSubstr("nothing depends on parameter 'unused'"));
-  EXPECT_THAT(error_of(replaced(duffing_text, "unit = \"1/s\"", "unit = \"1/ms\"")), HasSubstr("is not an SI unit"));
+  EXPECT_THAT(error_of(replaced(duffing_text, "unit = \"1/s\"", "unit = \"1/ms\"")),
+              AllOf(HasSubstr("is not an SI unit"), HasSubstr("declare it as \"1/s\""), HasSubstr("\"5 1/ms\"")));
   EXPECT_THAT(error_of(replaced(duffing_text, "unit = \"1/s\", ", "")), HasSubstr("the unit is missing"));
   EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "sin = {")), HasSubstr("is no function of formulas"));
   EXPECT_THAT(error_of(replaced(duffing_text, "gain = {", "u = {")), HasSubstr("'u' is taken"));

@@ -202,6 +202,12 @@ TEST(Figure, LongTimesAreShownInHoursOrDaysAndStaySecondsInTheNumbers) {
   EXPECT_NE(script_over(240.0 * hour).find("'4' 345600"), std::string::npos);
 }
 
+/// gnuplot's own formats write 2e-6 and 2.2e-6 as 0.000002.
+TEST(Figure, SmallNumbersBesideAnAxisCanBeToldApart) {
+  EXPECT_NE(gnuplot_script(figure_of(line({1.4e-6, 2.0e-6, 2.8e-6}))).find("set format y '%.3g'"), std::string::npos);
+  EXPECT_EQ(gnuplot_script(figure_of(line({1.4, 2.0, 2.8}))).find("set format y '%.3g'"), std::string::npos);
+}
+
 TEST(Figure, AMissingValueBreaksTheLine) {
   const TemporaryFolder folder;
   const std::string whole = read_file(write_figure(folder.path(), figure_of(line({1.0, 2.0, 1.5, 2.5, 1.0}))));

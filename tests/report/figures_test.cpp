@@ -191,6 +191,19 @@ TEST(Figures, TheTypicalIntervalAvoidsGaps) {
   EXPECT_EQ(all.to, 1.0);
 }
 
+/// Counted in samples: of a house that is read every ten minutes five seconds have none.
+TEST(Figures, ThePartThatIsDrawnByItselfHasSoManySamplesHoweverSlowTheRecording) {
+  const std::vector<double> values(1000, 1.0);
+  for (const double step : {1e-3, 600.0}) {
+    std::vector<double> t;
+    for (std::size_t i = 0; i < values.size(); ++i) t.push_back(step * static_cast<double>(i));
+    const auto part = part_to_draw(t, values, 300);
+    ASSERT_TRUE(part) << step;
+    EXPECT_NEAR((part->to - part->from) / step, 300.0, 1e-6);
+    EXPECT_FALSE(part_to_draw(t, values, 500)) << "hardly shorter than the whole";
+  }
+}
+
 /// Measured 0 throughout; predicted 32 samples ahead with the error `worst` in the middle fifth, and 1 elsewhere.
 Fit predicting_ahead(const std::string& name, double worst, const std::string& other = "") {
   Fit fit;

@@ -78,7 +78,7 @@ class LooseReader {
 
   LooseTable read() {
     split_lines();
-    if (table_is_no_text()) fail(0, "this is no text: a CSV of UTF-8 is expected (or MAT, HDF5, NPY, NPZ, ULog, DataFlash .bin)");
+    if (is_no_text()) fail(0, "this is no text: a CSV of UTF-8 is expected (or MAT, HDF5, NPY, NPZ, ULog, DataFlash .bin)");
     if (lines_.empty()) fail(0, "the file is empty: columns of numbers under a line of names are expected, as t[s],u[V],y[V]");
     find_delimiter();
     read_header();
@@ -96,7 +96,7 @@ class LooseReader {
  private:
   [[noreturn]] void fail(int line, const std::string& message) const { throw InputError({table_.source, line, 0}, message); }
 
-  [[nodiscard]] bool table_is_no_text() const {
+  [[nodiscard]] bool is_no_text() const {
     constexpr std::size_t looked_at = 4096;
     return content_.text().substr(0, looked_at).find('\0') != std::string_view::npos;
   }

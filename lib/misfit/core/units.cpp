@@ -162,7 +162,7 @@ constexpr Known known_units[] = {
 
 /// Of what people write for a unit that has another name here.
 std::string hint_for(std::string_view name, const std::vector<std::string>& names) {
-  if (name == "C" || name == "°C") return " — degC is of temperatures, A s of charges";
+  if (name == "C") return " — degC is of temperatures, A s of charges";
   if (name == "Ah" || name == "mAh") return " — a charge: A h";
   if (name.find_first_of("()[]") != std::string_view::npos)
     return " — units have no brackets: what is below a fraction bar stands behind a / of its own, as V/A/s";

@@ -9,6 +9,7 @@
 #include "misfit/core/shown.h"
 #include "misfit/discover/bindings.h"
 #include "misfit/discover/operating_range.h"
+#include "misfit/math/statistics.h"
 #include "misfit/model/does_not_suit.h"
 #include "misfit/model/memory.h"
 
@@ -259,14 +260,11 @@ bool can_be_candidate(const Effect& effect) {
 
 /// An input that stays as it is from most samples to the next, in every recording.
 bool is_held(const FilterEstimate& estimate, const std::string& input) {
+  constexpr double most = 0.5;
   return std::all_of(estimate.data.begin(), estimate.data.end(), [&](const FilterData& data) {
     const auto& inputs = data.signals->inputs;
     const auto found = std::find_if(inputs.begin(), inputs.end(), [&](const Signal& s) { return s.name == input; });
-    if (found == inputs.end()) return false;
-    const std::vector<double>& u = found->values;
-    std::ptrdiff_t same = 0;
-    for (std::size_t i = 1; i < u.size(); ++i) same += u[i] == u[i - 1] ? 1 : 0;
-    return 2 * same > std::ssize(u);
+    return found != inputs.end() && repeat_share(found->values) > most;
   });
 }
 

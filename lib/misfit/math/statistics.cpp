@@ -46,6 +46,16 @@ double resolution_of(std::vector<double> values) {
   return step;
 }
 
+double repeat_share(const std::vector<double>& values) {
+  std::size_t equal = 0, pairs = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]) || !std::isfinite(values[i - 1])) continue;
+    ++pairs;
+    equal += values[i] == values[i - 1] ? 1U : 0U;
+  }
+  return pairs == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(pairs);
+}
+
 bool MeanAndSigma::constant() const {
   constexpr double rounding = 1e-12;
   return !(sigma > rounding * std::abs(mean));

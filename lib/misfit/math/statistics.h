@@ -11,6 +11,9 @@ namespace misfit {
 /// is none. All values finite.
 [[nodiscard]] double resolution_of(std::vector<double> values);
 
+/// Share of the finite samples that equal the one before; 0 of none.
+[[nodiscard]] double repeat_share(const std::vector<double>& values);
+
 /// Usual step of a time base: the median difference [s]; 1 for fewer than two samples.
 [[nodiscard]] double usual_step(const std::vector<double>& t);
 

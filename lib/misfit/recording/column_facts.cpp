@@ -68,16 +68,6 @@ bool is_integer(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return v == std::round(v); });
 }
 
-double repeat_share(const std::vector<double>& values) {
-  std::size_t equal = 0, pairs = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]) || !std::isfinite(values[i - 1])) continue;
-    ++pairs;
-    equal += values[i] == values[i - 1] ? 1U : 0U;
-  }
-  return pairs == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(pairs);
-}
-
 bool is_coarsely_digitised(const std::vector<double>& values, double resolution) {
   if (!(resolution > 0.0)) return false;
   const std::vector<double> known = finite(values);

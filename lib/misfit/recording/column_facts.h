@@ -11,9 +11,6 @@ namespace misfit {
 [[nodiscard]] std::vector<double> finite(const std::vector<double>& values);
 [[nodiscard]] bool is_integer(const std::vector<double>& values);
 
-/// Share of the samples that equal the one before.
-[[nodiscard]] double repeat_share(const std::vector<double>& values);
-
 /// A measurement that stands still between steps of its last digit (`resolution`), not a command that jumps: most of its changes are one
 /// such step, over more levels than a staircase of 5 % has, or to and fro among a few.
 [[nodiscard]] bool is_coarsely_digitised(const std::vector<double>& values, double resolution);

@@ -299,14 +299,10 @@ class VerdictBuilder {
     }
   }
 
-  [[nodiscard]] std::string add_by_hand(const Candidate& rejected) const {
-    if (by_hand(rejected).empty()) return command("open");
-    return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
-  }
-
   /// Only what predicts the held-out data better: else there is no reason to add what was rejected.
   [[nodiscard]] std::string add_rejected(const Candidate& rejected) const {
-    return rejected.held_out_gain.value_or(0.0) > 0.0 ? add_by_hand(rejected) : command("open");
+    if (by_hand(rejected).empty() || !(rejected.held_out_gain.value_or(0.0) > 0.0)) return command("open");
+    return command("add", rejected.effect) + (rejected.roles.empty() ? "" : at_place(rejected.roles));
   }
 
   /// Of the last model; nullptr: what it lacks is there for longer.

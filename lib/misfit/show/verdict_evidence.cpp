@@ -10,6 +10,9 @@
 #include "misfit/show/rows.h"
 
 namespace misfit {
+namespace {
+constexpr double significant = 0.01;
+}  // namespace
 
 const Fit* leading_fit(const std::vector<Fit>& fits) {
   const Fit* last = nullptr;
@@ -31,14 +34,12 @@ std::string why_nothing_is_known(const Fit& fit) {
 }
 
 std::string map_in_doubt(const Diagnosis* diagnosis) {
-  constexpr double significant = 0.01;
   if (diagnosis == nullptr || diagnosis->maps.empty() || diagnosis->maps.front().p_corrected > significant) return "";
   const ForceMap& map = diagnosis->maps.front();
   return fmt::format("all the same, the missing {} against {} is significant ({})", map.port, map.quantity, p_equals(map.p_corrected));
 }
 
 std::string motion_in_doubt(const Comparison* comparison) {
-  constexpr double significant = 0.01;
   if (comparison == nullptr || !comparison->motion || comparison->motion->p_value > significant) return "";
   return fmt::format(
       "but the fitted model does not make the statistics of the measured motion ({}): something slow or rare, which one "

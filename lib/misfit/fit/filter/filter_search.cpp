@@ -222,7 +222,6 @@ void FilterSearch::refine_jointly() {
   LikelihoodDerivatives exact;
   bool one_sided = false;
   at_kink_ = false;
-  at_.describe_noise();
   for (int k = 0, axis_steps = 0; k < most_steps; ++k) {
     if (!differentiate(one_sided, exact)) return;
     one_sided = false;

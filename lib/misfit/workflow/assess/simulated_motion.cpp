@@ -76,12 +76,12 @@ std::vector<MotionPath> paths_of(const Model& model, const Signals& signals) {
 /// Noise of the channels as they were read in one experiment. The white noise of readings in whole steps has their rounding in it
 /// (mark_rounding()), which is made again: where the motion is slow, it is not white. Where the model itself reads in steps: read().
 std::vector<MeasurementNoise> measurement_noise(const FilterEstimate& estimate, const Signals& measured) {
-  const bool model_reads_steps = !steps_of_outputs(estimate.model).empty();
+  const std::vector<double> read_by_model = steps_of_outputs(estimate.model);
   std::vector<MeasurementNoise> out;
   for (std::size_t c = 0; c < measured.measured.size(); ++c) {
     const ChannelNoise& from = estimate.noise.channels[c];
     MeasurementNoise& own = out.emplace_back(from.white, from.coloured, from.coloured_frequency, from.coloured_damping);
-    if (model_reads_steps) continue;
+    if (!read_by_model.empty() && read_by_model[c] > 0.0) continue;
     std::vector<double> known = measured.measured[c].values;
     std::erase_if(known, [](double v) { return !std::isfinite(v); });
     if (known.empty()) continue;
