@@ -14,7 +14,9 @@ using namespace testing_cart;
 /// What k_step_errors reads of an estimate; a cubic spring sends what starts far out to infinity.
 FilterEstimate estimate_of(const Cart& cart) {
   FilterEstimate estimate;
-  estimate.model = estimate.forced.model = cart.model.model;
+  estimate.model = cart.model.model;
+  estimate.forced = cart.model;
+  estimate.noise = cart.noise;
   estimate.data = {cart.data};
   estimate.traces = {cart.run()};
   return estimate;
@@ -80,6 +82,26 @@ TEST(KStep, PredictionsFarAheadHaveTheErrorsOfTheLongestRuns) {
     const double rms = std::sqrt(squares / count);
     EXPECT_NEAR(errors.rms.at(outputs[o].name).back(), rms, 1e-9 * rms) << outputs[o].name;
   }
+}
+
+/// Three samples of the position leave the speed unknown to 2 m/s: the next position follows to 0.1, that of 0.64 s later to no more
+/// than 1.
+TEST(KStep, NoneIsMadeFarAheadOfASpeedThatTheFirstSamplesHardlyShow) {
+  Cart cart(303);
+  for (std::size_t k = 0; k < 303; ++k) cart.data.use[2 * k + 1] = SampleRole::none;
+  cart.noise.force = 0.1;
+  cart.data.covariance(1, 1) = 100.0;
+  const FilterEstimate unknown = estimate_of(cart);
+  const std::vector<double> position = predictions_far_ahead(unknown, 0)[0];
+  EXPECT_TRUE(std::isnan(position[std::size_t{kFarAhead}]));
+  for (std::size_t k = 20 + std::size_t{kFarAhead}; k < 303; ++k) EXPECT_TRUE(std::isfinite(position[k])) << k;
+
+  cart.data.covariance(1, 1) = 0.03;
+  const FilterEstimate known = estimate_of(cart);
+  EXPECT_TRUE(std::isfinite(predictions_far_ahead(known, 0)[0][std::size_t{kFarAhead}]));
+  const double far = k_step_errors(unknown).rms.at("position_reading").back(),
+               of_known = k_step_errors(known).rms.at("position_reading").back();
+  EXPECT_LT(far, 1.2 * of_known) << "one such error would make up the whole of it";
 }
 
 TEST(GrowthOfErrors, IsThatOfTheLongestPredictionsOverAllChannels) {

@@ -9,7 +9,9 @@
 
 #include "misfit/core/text.h"
 #include "misfit/data/ladder.h"
+#include "misfit/fit/filter/filter_run.h"
 #include "misfit/fit/filter/settled.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -30,14 +32,85 @@ struct Errors {
   }
 };
 
+/// The run of the filter over one experiment with the covariances of its states; that of the estimate, without them, where it fails.
+FilterTrace run_with_covariances(const FilterEstimate& estimate, std::size_t experiment) {
+  FilterRunner runner(estimate.forced, false);
+  runner.set_parameters(estimate.forced.model.values());
+  FilterTrace trace;
+  const bool finite = runner.run(estimate.data[experiment], estimate.noise, trace, {.keep_P = true});
+  return finite ? trace : estimate.traces[experiment];
+}
+
+/// Which predictions kLadderSteps ahead say something of the model: those whose sigma, from what is not known of the state they begin with
+/// and what a prediction of one sample is unsure of, is at most three times the median of all of that length. A state that the first
+/// samples hardly show, as the speed of what is measured by its place, leaves predictions of one sample sure and those far ahead of any
+/// size: a handful of them would make up the RMS.
+class SettledAhead {
+ public:
+  explicit SettledAhead(const FilterTrace& trace) : trace_(trace), ny_(static_cast<std::size_t>(trace.ny)) {
+    if (trace.P.empty()) return;
+    sigma_.assign(trace.samples * lengths * ny_, std::nan(""));
+    for (std::size_t k = 0; k + 1 < trace.samples; ++k) follow(k);
+    for (std::size_t l = 0; l < lengths; ++l) {
+      for (std::size_t o = 0; o < ny_; ++o) largest_.push_back(largest_of(l, o));
+    }
+  }
+
+  [[nodiscard]] bool settled(std::size_t k, std::size_t length, std::size_t o) const {
+    return sigma_.empty() || sigma_[place(k, length, o)] <= largest_[length * ny_ + o];
+  }
+
+ private:
+  [[nodiscard]] std::size_t place(std::size_t k, std::size_t length, std::size_t o) const { return (k * lengths + length) * ny_ + o; }
+
+  /// From the state predicted for sample k + 1, along the linearised steps.
+  void follow(std::size_t k) {
+    const Eigen::Index n = trace_.n, columns = n + 2 * Eigen::Index{trace_.ny};
+    const Eigen::Map<const RowMatrix> P(trace_.P.data() + (k + 1) * static_cast<std::size_t>(n * columns), n, columns);
+    RowMatrix to_there = RowMatrix::Identity(n, n);
+    std::size_t next = 0;
+    for (std::size_t j = 1; next < lengths && k + j < trace_.samples; ++j) {
+      if (j > 1) to_there = trace_.Phi_at(k + j - 1) * to_there;
+      if (static_cast<int>(j) != kLadderSteps[next]) continue;
+      for (std::size_t o = 0; o < ny_; ++o) {
+        const std::size_t at = trace_.place(k + j, o);
+        const Eigen::RowVectorXd row = trace_.H_at(at).transpose() * to_there;
+        const double variance = row * P.leftCols(n) * row.transpose();
+        sigma_[place(k, next, o)] = std::sqrt(std::max(variance, 0.0) + trace_.y_variance[at]);
+      }
+      ++next;
+    }
+  }
+
+  [[nodiscard]] double largest_of(std::size_t length, std::size_t o) const {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < trace_.samples; ++k) {
+      if (const double sigma = sigma_[place(k, length, o)]; std::isfinite(sigma)) all.push_back(sigma);
+    }
+    constexpr double ratio = 3.0;
+    return all.empty() ? 0.0 : ratio * median(std::move(all));
+  }
+
+  const FilterTrace& trace_;
+  std::size_t ny_;
+  std::vector<double> sigma_;    ///< [sample the run begins at][length][channel]; NaN: none reaches there
+  std::vector<double> largest_;  ///< [length][channel]
+};
+
 /// Free runs of one experiment: from the filtered states as far as the longest length, where that state is settled (settled.h).
 class FreeRuns {
  public:
-  FreeRuns(Stepper& stepper, const FilterData& data, const FilterTrace& trace)
-      : stepper_(stepper), data_(data), trace_(trace), predictions_(trace, data), signals_(*data.signals) {}
+  FreeRuns(Stepper& stepper, const FilterEstimate& estimate, std::size_t experiment)
+      : stepper_(stepper),
+        data_(estimate.data[experiment]),
+        trace_(estimate.traces[experiment]),
+        predictions_(trace_, data_),
+        with_covariances_(run_with_covariances(estimate, experiment)),
+        ahead_(with_covariances_),
+        signals_(*data_.signals) {}
 
   /// From every `stride`-th sample. `visit(length, k, y)`: the outputs at sample k, kLadderSteps[length] after the start, as the run has
-  /// them; nullptr: it has diverged, or nothing can be read from its state.
+  /// them, NaN of one that is not settled there; nullptr: it has diverged, or nothing can be read from its state.
   template <class Visit>
   void run(std::size_t stride, Visit&& visit) {
     prepare_at(along(), data_.first, data_.start.data());
@@ -59,6 +132,9 @@ class FreeRuns {
       finite = finite && stepper_.step(x.data(), interval_after(along(), k + j - 1));
       if (static_cast<int>(j) != kLadderSteps[next]) continue;
       finite = finite && predict_at(along(), k + j, x.data(), y.data());
+      for (std::size_t o = 0; o < signals_.measured.size(); ++o) {
+        if (!ahead_.settled(k, next, o)) y[o] = std::nan("");
+      }
       visit(next++, k + j, finite ? y.data() : nullptr);
     }
   }
@@ -67,17 +143,20 @@ class FreeRuns {
   const FilterData& data_;
   const FilterTrace& trace_;
   SettledPredictions predictions_;
+  const FilterTrace with_covariances_;
+  const SettledAhead ahead_;
   const Signals& signals_;
 };
 
-void add_errors(const FilterData& data, const FilterTrace& trace, Stepper& stepper, Errors& errors) {
+void add_errors(const FilterEstimate& estimate, std::size_t experiment, Stepper& stepper, Errors& errors) {
   constexpr std::size_t stride = 3;  // neighbours say the same
-  FreeRuns(stepper, data, trace).run(stride, [&](std::size_t length, std::size_t k, const double* y) {
+  const FilterData& data = estimate.data[experiment];
+  FreeRuns(stepper, estimate, experiment).run(stride, [&](std::size_t length, std::size_t k, const double* y) {
     ++errors.runs[length];
     errors.diverged[length] += y != nullptr ? 0U : 1U;
     if (y == nullptr) return;
     for (std::size_t o = 0; o < errors.squares.size(); ++o) {
-      if (!errors.has(data.use[k * errors.squares.size() + o])) continue;
+      if (!errors.has(data.use[k * errors.squares.size() + o]) || std::isnan(y[o])) continue;
       errors.squares[o][length] += std::pow(data.signals->measured[o].values[k] - y[o], 2);
       errors.counts[o][length] += 1.0;
     }
@@ -109,7 +188,7 @@ KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compar
   const Model fixed = all_fixed(estimate.forced.model);
   Stepper stepper(fixed);
   Errors errors(outputs.size(), compared);
-  for (std::size_t e = 0; e < estimate.data.size(); ++e) add_errors(estimate.data[e], estimate.traces[e], stepper, errors);
+  for (std::size_t e = 0; e < estimate.data.size(); ++e) add_errors(estimate, e, stepper, errors);
   KStepErrors out;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     for (std::size_t l = 0; l < lengths; ++l) {
@@ -131,11 +210,10 @@ std::vector<std::vector<double>> predictions_far_ahead(const FilterEstimate& est
   Stepper stepper(fixed);
   const std::size_t samples = data.signals->samples();
   std::vector<std::vector<double>> out(data.signals->measured.size(), std::vector<double>(samples, std::nan("")));
-  FreeRuns(stepper, data, estimate.traces[experiment])
-      .run(1 + samples / most_runs, [&](std::size_t length, std::size_t k, const double* y) {
-        if (length + 1 < lengths || y == nullptr) return;
-        for (std::size_t o = 0; o < out.size(); ++o) out[o][k] = y[o];
-      });
+  FreeRuns(stepper, estimate, experiment).run(1 + samples / most_runs, [&](std::size_t length, std::size_t k, const double* y) {
+    if (length + 1 < lengths || y == nullptr) return;
+    for (std::size_t o = 0; o < out.size(); ++o) out[o][k] = y[o];
+  });
   return out;
 }
 
