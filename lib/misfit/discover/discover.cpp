@@ -19,6 +19,7 @@
 #include "misfit/discover/unknown_curves.h"
 #include "misfit/discover/unknown_form.h"
 #include "misfit/discover/verdict.h"
+#include "misfit/fit/filter/noise_report.h"
 #include "misfit/jobs/ranks.h"
 
 namespace misfit {
@@ -217,7 +218,7 @@ class Search {
 
   void describe_search(std::optional<Unexplained> unexplained) {
     unexplained = or_what_can_be_added(std::move(unexplained));
-    out_.force = random_force(estimate_);
+    out_.force = estimated_force(estimate_);
     for (const auto& s : screening_) out_.tried.push_back(what_was_tried(s));
     std::string curves = "unknown curves:";
     for (const auto& curve : unknown_)

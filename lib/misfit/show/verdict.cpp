@@ -377,6 +377,16 @@ class VerdictBuilder {
       nothing_missing(d);
     }
   }
+  /// The random force that drives the motion; of a fit that has none, that which the search had to take beside the model.
+  [[nodiscard]] std::vector<ForceStrength> forces_left(const Discovery& d) const {
+    constexpr double sigmas = 2.0;
+    const bool has_none = fit_->force.empty();
+    auto out = has_none ? force_strengths(d.force) : fit_->driven ? force_strengths(fit_->force) : std::vector<ForceStrength>{};
+    std::erase_if(out, [&](const ForceStrength& f) {
+      return !(f.strength.value > sigmas * f.strength.sigma) || (has_none && !(f.strength.sigma > 0.0));
+    });
+    return out;
+  }
   void nothing_missing(const Discovery& d) {
     if (const std::string why = why_nothing_is_known(*fit_); !why.empty())
       return say(VerdictKind::not_decided, "whether an effect is missing cannot be said: " + why, command("open"));
@@ -388,11 +398,9 @@ class VerdictBuilder {
         "no effect is found missing" + (tested_alone == 0   ? std::string(", but none of the library was tested")
                                         : tested_alone == 1 ? ": the one that was tested is not needed"
                                                             : ": none of the " + tested_in_words(d) + " that were tested is needed");
-    auto forces = fit_->driven ? force_strengths(fit_->force) : std::vector<ForceStrength>{};
-    constexpr double sigmas = 2.0;
-    std::erase_if(forces, [](const ForceStrength& f) { return !(f.strength.value > sigmas * f.strength.sigma); });
-    if (!forces.empty()) {
+    if (const auto forces = forces_left(d); !forces.empty()) {
       say(VerdictKind::random_force, tested + ", and what is left is a random force of " + in_words(forces), export_command());
+      note("a disturbance that nothing measures does that, and so would an effect that the library does not have");
     } else {
       say(VerdictKind::nothing_missing, tested, export_command());
     }

@@ -29,21 +29,38 @@ std::vector<double> noise_sigmas(const FilterEstimate& estimate) {
   return out;
 }
 
+Estimate noise_estimate(double log_value, double sigma_of_log, const std::string& unit) {
+  const double value = std::exp(log_value);
+  return {value, value * sigma_of_log, unit};
+}
+
+std::map<std::string, Estimate> forces_of(const FilterEstimate& estimate, const NoiseVector& vector, const std::vector<double>& sigmas) {
+  const SystemSpec& spec = estimate.model.system->spec();
+  std::map<std::string, Estimate> out;
+  for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
+    const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[i]];
+    const std::size_t at = place_of_force(estimate.forced.force_group[i], spec);
+    out[named.name] = noise_estimate(vector.value[at], sigmas[at], named.unit);
+  }
+  return out;
+}
+
 }  // namespace
+
+std::map<std::string, Estimate> estimated_force(const FilterEstimate& estimate) {
+  return forces_of(estimate, pack(estimate.noise, estimate.model.system->spec(), estimate.reference), noise_sigmas(estimate));
+}
 
 void add_noise(const FilterEstimate& estimate, int threads, Fit& fit) {
   const SystemSpec& spec = estimate.model.system->spec();
   const NoiseVector vector = pack(estimate.noise, spec, estimate.reference);
   const std::vector<double> sigmas = noise_sigmas(estimate);
-  const auto as_estimate = [&](std::size_t i, const std::string& unit) {
-    const double value = std::exp(vector.value[i]);
-    return Estimate{value, value * sigmas[i], unit};
-  };
+  const auto as_estimate = [&](std::size_t i, const std::string& unit) { return noise_estimate(vector.value[i], sigmas[i], unit); };
   const auto intervals = noise_intervals(estimate, {place_in_noise::force, place_in_noise::force_time}, threads);
+  fit.force = forces_of(estimate, vector, sigmas);
   for (std::size_t i = 0; i < estimate.forced.force_ports.size(); ++i) {
     const PortSpec& named = spec.dynamic_ports[estimate.forced.force_ports[i]];
     const std::size_t at = place_of_force(estimate.forced.force_group[i], spec);
-    fit.force[named.name] = as_estimate(at, named.unit);
     if (at == place_in_noise::force) fit.force[named.name].interval = intervals[0];
     fit.driven = fit.driven || sigmas[at] > 0.0;
   }

@@ -1,10 +1,16 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "misfit/data/fit.h"
 #include "misfit/fit/filter/filter_estimate.h"
 
-// What a filter_error fit says of noise and random force: not for use outside.
+// What a filter_error fit says of noise and random force.
 namespace misfit {
+
+/// Strength of the random force on each port; sigma 0: not determined.
+[[nodiscard]] std::map<std::string, Estimate> estimated_force(const FilterEstimate& estimate);
 
 /// Noise of the outputs and random force with their sigmas; of the first force's strength and the correlation time with 95 % intervals.
 /// Sets whether the motion is driven.
