@@ -14,7 +14,8 @@ struct Delay {
       "straight between its samples; before them a constant, which filter_error estimates, or its first value";
   static constexpr const char* valid =
       "any recorded input; jumps too. Counted from the recorded samples: an input that jumps between them acts up to a sampling interval "
-      "earlier, on average half of one";
+      "earlier, on average half of one. Where an output shows a held input at once, the delay is known to one sampling interval only, "
+      "whatever its sigma: within it the gains make up for it";
   static constexpr const char* size = "tau = 0.1 s at 1 rad/s: an error of 10 % of the input's amplitude, 90 deg behind it";
   static constexpr const char* source = "Ljung, System Identification, 2nd ed., 4.2: input delay n_k, here with fractions of a step";
   static constexpr const char* excludes = "delays that change, inputs that changed less than tau before the recording began";
