@@ -1,5 +1,8 @@
 #include "apps/verb_options.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -284,7 +287,9 @@ const VerbEntry& entry_of(std::string_view name) {
     if (option.starts_with("--") && option.size() > 2 && std::find(names.begin(), names.end(), option) == names.end())
       throw InputError(name + " has no option '" + shown(option) + "'" + suggest(option, names));
   }
-  throw InputError(name + ": " + shortened(error.what(), longest_message / 2) + "; see misfit help " + name);
+  const bool no_format = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && std::string_view(error.what()).starts_with("--to ");
+  const std::string valid = no_format ? fmt::format(" — valid: {}", fmt::join(export_formats(), ", ")) : "";
+  throw InputError(name + ": " + shortened(error.what(), longest_message / 2) + valid + "; see misfit help " + name);
 }
 
 }  // namespace

@@ -46,6 +46,11 @@ TEST(FormulaErrors, NameBothUnitsThatDoNotMatch) {
   EXPECT_THAT(error_of("abs(x, n)"), HasSubstr("measure different things"));
 }
 
+TEST(FormulaErrors, SayWhatTheNamesWithinMeasure) {
+  EXPECT_THAT(error_of("x + n*v*v"), HasSubstr("'n*v*v' [V^2/s^2] measure different things (n [-], v [V/s])"));
+  EXPECT_THAT(error_of("x + v"), testing::EndsWith("measure different things")) << "said already";
+}
+
 TEST(FormulaErrors, KeepConditionsAndNumbersApart) {
   EXPECT_THAT(error_of("if(x, 1, 2)"), HasSubstr("a condition as 'x > 0' is expected"));
   EXPECT_THAT(error_of("(x > 0) + 1"), HasSubstr("is no number"));

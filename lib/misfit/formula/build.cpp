@@ -1,7 +1,12 @@
 #include "misfit/formula/build.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "misfit/core/lists.h"
 #include "misfit/core/shown.h"
@@ -43,6 +48,21 @@ class Builder {
     return "'" + part + "' " + (m.truth ? "(a condition)" : "[" + m.text() + "]");
   }
 
+  /// " (R [V], i [A])": what the names within these arguments measure; empty where they are names themselves.
+  std::string units_within(const std::vector<std::size_t>& arguments) const {
+    std::vector<std::string> out;
+    for (const std::size_t k : arguments) {
+      const Expression& whole = syntax_.nodes[at_->arguments[k]];
+      for (std::size_t node = 0; node < made_.size() && whole.kind != Expression::Kind::name; ++node) {
+        const Expression& e = syntax_.nodes[node];
+        if (e.kind != Expression::Kind::name || e.begin < whole.begin || e.end > whole.end) continue;
+        std::string unit = misfit::shown(e.text) + " [" + made_[node].measure.text() + "]";
+        if (std::find(out.begin(), out.end(), unit) == out.end()) out.push_back(std::move(unit));
+      }
+    }
+    return out.empty() ? "" : fmt::format(" ({})", fmt::join(out, ", "));
+  }
+
   Meaning one() {
     if (at_->kind == Expression::Kind::number) {
       Meaning out{g_.constant(at_->value), {}};
@@ -77,7 +97,7 @@ class Builder {
       if (!common.fits(arg(k).measure)) {
         const bool number = g_.is_constant(arg(k).node) || g_.is_constant(arg(holder).node);
         fail(shown(holder) + " and " + shown(k) + " measure different things" +
-             (number ? ": a number with a unit needs a name under [parameters]" : ""));
+             (number ? ": a number with a unit needs a name under [parameters]" : units_within({holder, k})));
       }
       if (common.any) {
         common = arg(k).measure;
