@@ -35,14 +35,29 @@ struct TwoEstimates {
 TEST(AModelFittedBelowItsMaximum, IsFittedAgainFromWhereARefitHasEnded) {
   const TwoEstimates two;
   ASSERT_LT(two.lower.objective, two.found.estimate.objective - 20.0);
-  const auto higher = higher_without(two.work(two.lower), {&two.refit});
+  const auto higher = higher_without(two.work(two.lower), {{&two.refit, two.refit.drop}});
   ASSERT_TRUE(higher);
   EXPECT_NEAR(higher->objective, two.found.estimate.objective, 0.5);
 }
 
+/// Where the refit has led, the effect itself explains something, which is lost at first.
+TEST(AModelFittedBelowItsMaximum, IsFittedAgainFromWhereADropIsMoreThanPredicted) {
+  TwoEstimates two;
+  for (Parameter& p : two.refit.estimate.model.parameters) {
+    if (p.name == "k") p.value *= 1.50005;
+  }
+  two.refit.drop = 50.0;
+  EXPECT_FALSE(higher_without(two.work(two.lower), {{&two.refit, 49.0}})) << "as predicted";
+  const auto higher = higher_without(two.work(two.lower), {{&two.refit, 35.0}});
+  ASSERT_TRUE(higher);
+  EXPECT_NEAR(higher->objective, two.found.estimate.objective, 0.5);
+  two.refit.drop = 500.0;
+  EXPECT_FALSE(higher_without(two.work(two.lower), {{&two.refit, 35.0}})) << "of a large drop that is little";
+}
+
 TEST(AModelFittedAtItsMaximum, IsNoHigherFromWhereARefitHasEnded) {
   const TwoEstimates two;
-  EXPECT_FALSE(higher_without(two.work(two.found.estimate), {&two.refit}));
+  EXPECT_FALSE(higher_without(two.work(two.found.estimate), {{&two.refit, two.refit.drop}}));
 }
 
 TEST(AModelFittedAtItsMaximum, IsLowerWithoutAnEffectThatExplainsSomething) {
@@ -50,7 +65,7 @@ TEST(AModelFittedAtItsMaximum, IsLowerWithoutAnEffectThatExplainsSomething) {
   for (Parameter& p : two.refit.estimate.model.parameters) {
     if (p.name == "k") p.value *= 1.2;
   }
-  EXPECT_FALSE(higher_without(two.work(two.found.estimate), {&two.refit}));
+  EXPECT_FALSE(higher_without(two.work(two.found.estimate), {{&two.refit, two.refit.drop}}));
 }
 
 }  // namespace

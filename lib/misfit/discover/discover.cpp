@@ -49,7 +49,10 @@ class Search {
       if (none_accepted() && waves_->refit_the_other_nominated()) unexplained = what_is_accepted();
       const bool more_to_try = !is_of_unknown_form(ranked_, unknown_, context());
       if (more_to_try && none_accepted() && waves_->refit_the_other_significant_ones()) unexplained = what_is_accepted();
-      if (more_to_try && none_accepted() && waves_->refit_afresh()) unexplained = what_is_accepted();
+      if (more_to_try && none_accepted() && waves_->refit_afresh()) {
+        if (find_higher()) return {};  // the model without them was not begun afresh
+        unexplained = what_is_accepted();
+      }
       if (more_to_try && none_accepted() && waves_->refit_what_a_slow_force_hides()) {
         std::optional<Unexplained> beside = what_is_accepted();
         if (!none_accepted() || !unexplained) unexplained = std::move(beside);  // what one leaves that is refused, too, tells less

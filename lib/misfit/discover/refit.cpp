@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "misfit/core/display.h"
@@ -246,15 +247,26 @@ OneStep one_step(const RefitWork& work, const ScoreTest& score, const ScreeningR
   return out;
 }
 
-std::optional<FilterEstimate> higher_without(const RefitWork& work, const std::vector<const Refit*>& refits) {
+namespace {
+
+/// [log-likelihood] What the model without the effect may lose where its refit has led, for a fit from there to be worth while.
+double allowed_without(const PredictedRefit& of) {
+  constexpr double small = 100.0;
+  const bool more_than_predicted = of.refit->drop < small && of.refit->drop > of.predicted + tied_drops;
+  return more_than_predicted ? 0.5 * of.predicted : -0.5 * tied_drops;
+}
+
+}  // namespace
+
+std::optional<FilterEstimate> higher_without(const RefitWork& work, const std::vector<PredictedRefit>& refits) {
   const double least = work.without.objective + 0.5 * tied_drops;
   std::optional<FilterStart> start;
-  double highest = least;
-  for (const Refit* refit : refits) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const PredictedRefit& of : refits) {
     Model model = work.without.model;
-    for (std::size_t i = 0; i < model.parameters.size(); ++i) model.parameters[i].value = refit->estimate.model.parameters[i].value;
-    const std::optional<NoisyRun> there = run_once(work, model, refit->estimate.noise);
-    if (!there || !(there->objective > highest)) continue;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) model.parameters[i].value = of.refit->estimate.model.parameters[i].value;
+    const std::optional<NoisyRun> there = run_once(work, model, of.refit->estimate.noise);
+    if (!there || !(there->objective > std::max(highest, work.without.objective - allowed_without(of)))) continue;
     highest = there->objective;
     start = {std::move(model), work.without.penalties, there->noise};
   }

@@ -73,10 +73,17 @@ struct NoisyRun {
 /// nullopt: the model cannot be run there.
 [[nodiscard]] std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model, const std::optional<FilterNoise>& given = {});
 
+/// A refit, and the drop that the score predicts of its effect.
+struct PredictedRefit {
+  const Refit* refit = nullptr;
+  double predicted = 0.0;
+};
 /// The model without any of these effects at a higher maximum than the estimate: what a refit changes in all else may lead there, where the
-/// effect itself explains little. Then everything that was found beside the estimate may be what it lacked itself. nullopt: from none of
-/// them does the log-likelihood come higher by more than tied_drops/2.
-[[nodiscard]] std::optional<FilterEstimate> higher_without(const RefitWork& work, const std::vector<const Refit*>& refits);
+/// effect itself explains little. Then everything that was found beside the estimate may be what it lacked itself. Fitted from the highest
+/// of where refits have led, without their effects: from where that is higher than the estimate by more than tied_drops/2; and, of a small
+/// drop (below 100) that is larger than predicted by more than tied_drops, from where no more than the half of what is predicted is lost:
+/// what is more may come of all else. nullopt: from none does the log-likelihood come higher by more than tied_drops/2.
+[[nodiscard]] std::optional<FilterEstimate> higher_without(const RefitWork& work, const std::vector<PredictedRefit>& refits);
 
 /// One Gauss–Newton step of all parameters from the estimate with the effect at its screened strength: the model is run there once and the
 /// noise fitted about that run, since what is explained leaves the random force.

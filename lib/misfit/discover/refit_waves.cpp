@@ -34,11 +34,11 @@ bool RefitWaves::may_explain_as(const RankedCandidate* most, const RankedCandida
 }
 
 std::optional<FilterEstimate> RefitWaves::higher() {
-  std::vector<const Refit*> refits;
+  std::vector<PredictedRefit> refits;
   for (RankedCandidate& e : ranked_) {
     if (!e.refit || !(e.refit->drop > tied_drops) || e.no_higher_at == e.refit->drop) continue;
     e.no_higher_at = e.refit->drop;
-    refits.push_back(&*e.refit);
+    refits.push_back({&*e.refit, e.candidate.predicted_drop});
   }
   return higher_without(work_from(context_.estimate, context_), refits);
 }
