@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -55,8 +56,9 @@ bool is_flexible(const FilterEstimate& estimate) {
 }
 
 /// "late_share = 0.12 ± 0.01, where the whole effect would have 1.00"; empty where the strengths are about whole. A flexible effect that
-/// fits worse as a whole is none.
-std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole) {
+/// fits worse as a whole is none, nor is one of which the whole explains less than half (`of_whole`: its share of the drop).
+std::string part_of_effect(const FilterEstimate& estimate, const std::vector<WholeStrength>& whole, double of_whole) {
+  constexpr double most = 0.5;
   constexpr double more = 0.2;  // of the whole: formulas idealise, which takes away rather than adds
   // What is left in steps may have had noise before: of a sawtooth of the prediction that leaves the mean over that noise, a part (its
   // first harmonic is exp(-2 pi^2 sigma^2/step^2) as large). The steps themselves are looked for in the measurements (off_whole_steps()).
@@ -66,7 +68,7 @@ std::string part_of_effect(const FilterEstimate& estimate, const std::vector<Who
     const double sigma = standard_error_of(estimate.model, estimate.covariance, w.parameter).value_or(0.0);
     const double share = p.value / w.value, of_sigma = 2.0 * sigma / std::abs(w.value);
     const bool about_whole = share >= 1.0 - std::max(less, of_sigma) && share <= 1.0 + std::max(more, of_sigma);
-    if (about_whole && !is_flexible(estimate)) continue;
+    if (about_whole && of_whole > most && !is_flexible(estimate)) continue;
     return p.name + " = " + in_display_unit(p.value, p.unit, sigma) + ", where the whole effect would have " +
            in_display_unit(w.value, p.unit) + (about_whole ? ", and fits worse" : "");
   }
@@ -124,6 +126,7 @@ class WholeSearch {
       const double least = out_.estimate.objective - allowed;
       const FilterEstimate nearly = estimate(start.model, noise, {});
       if (nearly.out_of_time) return Held::out_of_time;
+      highest_ = std::max(highest_, nearly.objective);
       if (is_far_below(nearly, least) && (nearly.converged || is_no_better_than_without(nearly))) return Held::refused;
       if (nearly.converged && is_where_the_last_ended(nearly)) return Held::refused;
       last_ = nearly.objective;
@@ -139,6 +142,12 @@ class WholeSearch {
     } catch (const RunError&) {  // the whole effect cannot be run there: a part of it is what was found
       return Held::refused;
     }
+  }
+
+  /// Of the drop of what was found, as the searches have ended.
+  [[nodiscard]] double share_of_whole() const {
+    const double without = work_.without.objective;
+    return (highest_ - without) / std::max(out_.estimate.objective - without, std::numeric_limits<double>::min());
   }
 
  private:
@@ -163,7 +172,8 @@ class WholeSearch {
 
   const RefitWork& work_;
   Refit& out_;
-  std::optional<double> last_;  ///< [log-likelihood] where the search before ended, before it was verified
+  double highest_ = -std::numeric_limits<double>::infinity();  ///< [log-likelihood]
+  std::optional<double> last_;                                 ///< [log-likelihood] where the search before ended, before it was verified
 };
 
 /// Of the shapes that the screening looked at, those with which the whole effect explains most at once, beside the estimate's values or the
@@ -233,7 +243,7 @@ bool fix_whole_strengths(const RefitWork& work, const ScreeningResult& screening
   const auto screened = best_screened_whole(work, screening, whole);
   const Held from_screened = screened ? hold(screened->first, screened->second, taken ? 0.0 : allowed) : Held::refused;
   if (from_screened == Held::out_of_time) return taken;
-  if (!taken && from_screened == Held::refused) out.partial = part_of_effect(out.estimate, whole);
+  if (!taken && from_screened == Held::refused) out.partial = part_of_effect(out.estimate, whole, search.share_of_whole());
   return true;
 }
 
