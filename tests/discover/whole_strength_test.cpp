@@ -1,11 +1,14 @@
 // The strength at which an effect of an input is whole: the gain by which the model lets the input act.
 #include "misfit/discover/whole_strength.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "tests/discover/found.h"
 #include "tests/model/declared_texts.h"
 
 namespace misfit {
@@ -76,6 +79,55 @@ TEST(WholeStrength, OfASmallInputIsTheGainWithinItsRange) {
   ASSERT_EQ(whole.size(), 1U);
   EXPECT_GT(whole[0].value, 0.6e6);
   EXPECT_LT(whole[0].value, 1.0e6);
+}
+
+const std::string cell_text = R"toml(
+[states]
+soc = { unit = "-", initial = { kind = "free", value = 0.5 } }
+[inputs]
+I = { unit = "A", hold = "zero_order" }
+[parameters]
+Q = { unit = "A s", value = 3000.0 }
+E0 = { unit = "V", value = 3.4 }
+E1 = { unit = "V", value = 0.7, free = true }
+R0 = { unit = "V/A", value = 0.02, free = true }
+[equations]
+soc = "-I/Q"
+[outputs]
+V = { unit = "V", formula = "E0 + E1*soc - R0*I", noise = 0.002 }
+)toml";
+
+/// Currents up to 5 A either way; V lacks 30 mV with the sign of the current. The charge is exact, by sums.
+Signals cell_of_sticky_voltage() {
+  constexpr double step = 2.0;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> amperes(-5.0, 5.0);
+  Signals s;
+  s.name = "cell";
+  s.measured = {{"V", "V", {}, 0.0}};
+  s.inputs = {{"I", "A", {}, 0.0}};
+  double soc = 0.5, current = 0.0;
+  for (int n = 0; n < 400; ++n) {
+    if (n % 8 == 0) current = amperes(random);
+    s.t.push_back(step * n);
+    s.inputs[0].values.push_back(current);
+    s.measured[0].values.push_back(3.4 + 0.8 * soc - 0.015 * current - 0.03 * std::tanh(current / 0.2) + 0.002 * normal(random));
+    soc -= step * current / 3000.0;
+  }
+  return s;
+}
+
+/// Most of what the input does and little of its charge would have to be limited to a tenth of an ampere.
+TEST(WholeStrength, OfASaturationThatExplainsLittleAsAWholeMakesItAPart) {
+  const Discovery found = Found(cell_of_sticky_voltage(), cell_text).discover_missing();
+  const auto saturation =
+      std::find_if(found.candidates.begin(), found.candidates.end(), [](const Candidate& c) { return c.effect == "saturation"; });
+  ASSERT_NE(saturation, found.candidates.end());
+  EXPECT_FALSE(saturation->accepted);
+  ASSERT_TRUE(saturation->actual_drop);
+  EXPECT_GT(*saturation->actual_drop, 100.0);
+  EXPECT_THAT(saturation->why, testing::HasSubstr("only a part of it is found"));
 }
 
 }  // namespace
