@@ -353,6 +353,13 @@ TEST(Recording, GapsRepeatedTimesMissingValuesAndConstantsAreSaid) {
   EXPECT_THAT(s.remarks, Contains(HasSubstr("gaps in time")));
 }
 
+TEST(Recording, StepsOfAnUnevenClockAreNoGaps) {
+  const RecordingSurvey s =
+      survey(rows("t_s,y", 100, [](int k) { return fmt::format("{},{}", 3.5e-3 * k + 2e-3 * (k / 4), std::sin(0.1 * k)); }));
+  EXPECT_TRUE(s.gaps.empty());
+  EXPECT_THAT(s.remarks, Contains(HasSubstr("uneven steps of time: usually 0.0035 s, at most 0.0055 s")));
+}
+
 TEST(Recording, AColumnWithoutAValueIsSaid) {
   const RecordingSurvey s = survey(rows("t_s,torque,y", 100, [](int k) { return fmt::format("{},NaN,{}", 0.1 * k, std::sin(0.1 * k)); }));
   EXPECT_EQ(column(s, "torque").use, ColumnUse::constant);

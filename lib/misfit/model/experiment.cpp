@@ -12,7 +12,7 @@
 #include "misfit/data/log/log.h"
 #include "misfit/data/log/time_base.h"
 #include "misfit/math/angle.h"
-#include "misfit/math/statistics.h"
+#include "misfit/math/time_steps.h"
 #include "misfit/model/recorded_inputs.h"
 
 namespace misfit {
@@ -257,12 +257,13 @@ class Reader {
     }
     std::vector<double> steps;
     for (std::size_t i = 1; i < out_.t.size(); ++i) steps.push_back(out_.t[i] - out_.t[i - 1]);
-    const double usual = median(steps);
-    constexpr double gap_in_steps = 1.5;
-    const auto gaps = std::count_if(steps.begin(), steps.end(), [&](double s) { return s > gap_in_steps * usual; });
-    if (gaps > 0)
-      out_.notes.push_back((gaps == 1 ? "1 gap in time, of " : std::to_string(gaps) + " gaps in time, the longest ") +
-                           format_value(*std::max_element(steps.begin(), steps.end())) + " s");
+    const LongSteps gaps = long_steps(steps);
+    const std::string longest = format_value(gaps.longest) + " s";
+    if (gaps.uneven) {
+      out_.notes.push_back("uneven steps of time: usually " + format_value(gaps.usual) + " s, at most " + longest);
+    } else if (gaps.count > 0) {
+      out_.notes.push_back((gaps.count == 1 ? "1 gap in time, of " : std::to_string(gaps.count) + " gaps in time, the longest ") + longest);
+    }
   }
 
   const Table& table_;

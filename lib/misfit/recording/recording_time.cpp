@@ -9,6 +9,7 @@
 #include "misfit/core/error.h"
 #include "misfit/core/text.h"
 #include "misfit/math/statistics.h"
+#include "misfit/math/time_steps.h"
 
 namespace misfit {
 namespace {
@@ -82,12 +83,17 @@ void find_gaps(const std::vector<double>& t, RecordingTime& out) {
   for (const auto& piece : out.pieces) {
     for (std::size_t k = 1; k < piece.size(); ++k) steps.push_back(t[piece[k]] - t[piece[k - 1]]);
   }
-  out.step = median(steps);
+  const LongSteps gaps = long_steps(steps);
+  out.step = gaps.usual;
   out.jitter = mad_sigma(steps);
-  constexpr double gap = 1.5;
+  if (gaps.uneven) {
+    out.remarks.push_back(
+        fmt::format("uneven steps of time: usually {} s, at most {} s", format_value(gaps.usual), format_value(gaps.longest)));
+    return;
+  }
   for (const auto& piece : out.pieces) {
     for (std::size_t k = 1; k < piece.size(); ++k) {
-      if (t[piece[k]] - t[piece[k - 1]] > gap * out.step) out.gaps.push_back({t[piece[k - 1]], t[piece[k]]});
+      if (t[piece[k]] - t[piece[k - 1]] > kGapInSteps * out.step) out.gaps.push_back({t[piece[k - 1]], t[piece[k]]});
     }
   }
   if (out.gaps.empty()) return;
