@@ -383,6 +383,7 @@ Refit refit_in_time(const RefitWork& work, const ScreeningResult& screening, con
   if (!out.ok) return in_time ? out : unfinished(screening, watch.words());
   if (in_time) narrow_smoothings(work, out);
   if (in_time) shorten_numerical_times(work, out);
+  if (in_time) fix_instant_strengths(work, out);
   const bool whole_tried = in_time && fix_whole_strengths(work, screening, out);
   if (whole_tried) try_exchanged_poles(work, out);
   note_half_a_sample(out);

@@ -6,9 +6,12 @@
 #include <vector>
 
 #include "misfit/core/error.h"
+#include "misfit/core/units.h"
 #include "misfit/core/watch.h"
 #include "misfit/discover/operating_range.h"
 #include "misfit/discover/unknown_curves.h"
+#include "misfit/inference/standard_error.h"
+#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -78,6 +81,28 @@ void go_on(const RefitWork& work, Refit& out, const GoingOn& how, const Next& ne
   }
 }
 
+double longest_usual_step(const std::vector<FilterData>& data) {
+  double out = 0.0;
+  for (const FilterData& d : data) out = std::max(out, usual_step(d.signals->t));
+  return out;
+}
+
+/// The free strengths of the estimate's last effect that are rates, are over within a sampling interval, and that the data do not
+/// determine: parameters of the model.
+std::vector<int> instant_strengths(const FilterEstimate& estimate, double step) {
+  constexpr double over = 3.0, sigmas = 2.0;
+  const BoundEffect& effect = estimate.model.effects.back();
+  std::vector<int> out;
+  for (const BoundCoefficient& c : effect.coefficients) {
+    if (c.parameter < 0) continue;
+    const Parameter& p = estimate.model.parameters[c.parameter];
+    if (!p.free || p.kind != CoefficientKind::strength || !parse_unit(p.unit).same_dimension(parse_unit("1/s"))) continue;
+    const auto sigma = standard_error_of(estimate.model, estimate.covariance, c.parameter);
+    if (p.value * step > over && (!sigma || p.value < sigmas * *sigma)) out.push_back(c.parameter);
+  }
+  return out;
+}
+
 }  // namespace
 
 void narrow_smoothings(const RefitWork& work, Refit& out) {
@@ -90,6 +115,26 @@ void shorten_numerical_times(const RefitWork& work, Refit& out) {
   constexpr double shorter = 0.1;
   go_on(work, out, {.most = most, .least = 0.5 * tied_drops, .as_planned = false},
         [](const FilterEstimate& estimate) { return with_shorter_times(estimate, shorter); });
+}
+
+void fix_instant_strengths(const RefitWork& work, Refit& out) {
+  constexpr double at_once = 300.0;  // per sampling interval: above the edge stays a 300th of what flows in during one
+  constexpr double allowed = 3.32;   // of the log-likelihood, as of a whole strength (allowed_of_whole())
+  const double step = longest_usual_step(out.estimate.data);
+  if (!out.estimate.converged || !(step > 0.0)) return;
+  const std::vector<int> instant = instant_strengths(out.estimate, step);
+  if (instant.empty()) return;
+  Model as_found = out.estimate.model, slower = as_found;
+  for (const int strength : instant) {
+    as_found.parameters[strength].free = slower.parameters[strength].free = false;
+    slower.parameters[strength].value = std::min(slower.parameters[strength].value, at_once / step);
+  }
+  const double objective = out.estimate.objective;
+  for (const Model& start : {slower, as_found}) {
+    go_on(work, out, {.most = 1, .least = objective - allowed - out.estimate.objective, .as_planned = false},
+          [&](const FilterEstimate&) { return std::optional(start); });
+    if (!out.estimate.model.parameters[instant.front()].free) break;
+  }
 }
 
 }  // namespace misfit
