@@ -47,10 +47,12 @@ FilterTrace run_with_covariances(const FilterEstimate& estimate, std::size_t exp
 /// size: a handful of them would make up the RMS.
 class SettledAhead {
  public:
-  explicit SettledAhead(const FilterTrace& trace) : trace_(trace), ny_(static_cast<std::size_t>(trace.ny)) {
-    if (trace.P.empty()) return;
-    sigma_.assign(trace.samples * lengths * ny_, std::nan(""));
-    for (std::size_t k = 0; k + 1 < trace.samples; ++k) follow(k);
+  /// Of runs from every `stride`-th sample behind `first`.
+  SettledAhead(const FilterTrace& trace, std::size_t first, std::size_t stride)
+      : trace_(trace), first_(first), stride_(stride), ny_(static_cast<std::size_t>(trace.ny)) {
+    if (trace.P.empty() || first >= trace.samples) return;
+    sigma_.assign(((trace.samples - first - 1) / stride + 1) * lengths * ny_, std::nan(""));
+    for (std::size_t k = first; k + 1 < trace.samples; k += stride) follow(k);
     for (std::size_t l = 0; l < lengths; ++l) {
       for (std::size_t o = 0; o < ny_; ++o) largest_.push_back(largest_of(l, o));
     }
@@ -61,7 +63,9 @@ class SettledAhead {
   }
 
  private:
-  [[nodiscard]] std::size_t place(std::size_t k, std::size_t length, std::size_t o) const { return (k * lengths + length) * ny_ + o; }
+  [[nodiscard]] std::size_t place(std::size_t k, std::size_t length, std::size_t o) const {
+    return ((k - first_) / stride_ * lengths + length) * ny_ + o;
+  }
 
   /// From the state predicted for sample k + 1, along the linearised steps.
   void follow(std::size_t k) {
@@ -84,37 +88,39 @@ class SettledAhead {
 
   [[nodiscard]] double largest_of(std::size_t length, std::size_t o) const {
     std::vector<double> all;
-    for (std::size_t k = 0; k < trace_.samples; ++k) {
-      if (const double sigma = sigma_[place(k, length, o)]; std::isfinite(sigma)) all.push_back(sigma);
+    for (std::size_t at = length * ny_ + o; at < sigma_.size(); at += lengths * ny_) {
+      if (std::isfinite(sigma_[at])) all.push_back(sigma_[at]);
     }
     constexpr double ratio = 3.0;
     return all.empty() ? 0.0 : ratio * median(std::move(all));
   }
 
   const FilterTrace& trace_;
-  std::size_t ny_;
-  std::vector<double> sigma_;    ///< [sample the run begins at][length][channel]; NaN: none reaches there
+  std::size_t first_, stride_, ny_;
+  std::vector<double> sigma_;    ///< [run][length][channel]; NaN: none reaches there
   std::vector<double> largest_;  ///< [length][channel]
 };
 
 /// Free runs of one experiment: from the filtered states as far as the longest length, where that state is settled (settled.h).
 class FreeRuns {
  public:
-  FreeRuns(Stepper& stepper, const FilterEstimate& estimate, std::size_t experiment)
-      : stepper_(stepper),
+  /// From every `stride`-th sample.
+  FreeRuns(Stepper& stepper, const FilterEstimate& estimate, std::size_t experiment, std::size_t stride)
+      : stride_(stride),
+        stepper_(stepper),
         data_(estimate.data[experiment]),
         trace_(estimate.traces[experiment]),
         predictions_(trace_, data_),
         with_covariances_(run_with_covariances(estimate, experiment)),
-        ahead_(with_covariances_),
+        ahead_(with_covariances_, data_.first, stride),
         signals_(*data_.signals) {}
 
-  /// From every `stride`-th sample. `visit(length, k, y)`: the outputs at sample k, kLadderSteps[length] after the start, as the run has
+  /// `visit(length, k, y)`: the outputs at sample k, kLadderSteps[length] after the start, as the run has
   /// them, NaN of one that is not settled there; nullptr: it has diverged, or nothing can be read from its state.
   template <class Visit>
-  void run(std::size_t stride, Visit&& visit) {
+  void run(Visit&& visit) {
     prepare_at(along(), data_.first, data_.start.data());
-    for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride) {
+    for (std::size_t k = data_.first; k + 1 < signals_.samples(); k += stride_) {
       if (predictions_.all_settled(k + 1)) run_from(k, visit);
     }
   }
@@ -139,6 +145,7 @@ class FreeRuns {
     }
   }
 
+  std::size_t stride_;
   Stepper& stepper_;
   const FilterData& data_;
   const FilterTrace& trace_;
@@ -151,7 +158,7 @@ class FreeRuns {
 void add_errors(const FilterEstimate& estimate, std::size_t experiment, Stepper& stepper, Errors& errors) {
   constexpr std::size_t stride = 3;  // neighbours say the same
   const FilterData& data = estimate.data[experiment];
-  FreeRuns(stepper, estimate, experiment).run(stride, [&](std::size_t length, std::size_t k, const double* y) {
+  FreeRuns(stepper, estimate, experiment, stride).run([&](std::size_t length, std::size_t k, const double* y) {
     ++errors.runs[length];
     errors.diverged[length] += y != nullptr ? 0U : 1U;
     if (y == nullptr) return;
@@ -210,7 +217,7 @@ std::vector<std::vector<double>> predictions_far_ahead(const FilterEstimate& est
   Stepper stepper(fixed);
   const std::size_t samples = data.signals->samples();
   std::vector<std::vector<double>> out(data.signals->measured.size(), std::vector<double>(samples, std::nan("")));
-  FreeRuns(stepper, estimate, experiment).run(1 + samples / most_runs, [&](std::size_t length, std::size_t k, const double* y) {
+  FreeRuns(stepper, estimate, experiment, 1 + samples / most_runs).run([&](std::size_t length, std::size_t k, const double* y) {
     if (length + 1 < lengths || y == nullptr) return;
     for (std::size_t o = 0; o < out.size(); ++o) out[o][k] = y[o];
   });
