@@ -73,6 +73,10 @@ struct NoisyRun {
 /// nullopt: the model cannot be run there.
 [[nodiscard]] std::optional<NoisyRun> run_once(const RefitWork& work, const Model& model, const std::optional<FilterNoise>& given = {});
 
+/// [log-likelihood] What one free parameter gains by chance once in a hundred times: half of the 99 % quantile of a chi² of one degree of
+/// freedom.
+inline constexpr double gain_by_chance = 3.32;
+
 /// A refit, and the drop that the score predicts of its effect.
 struct PredictedRefit {
   const Refit* refit = nullptr;

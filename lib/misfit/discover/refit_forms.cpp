@@ -75,15 +75,14 @@ std::string part_of_effect(const FilterEstimate& estimate, const std::vector<Who
   return {};
 }
 
-/// [log-likelihood] What the whole effect may cost: as much as a free share gains by chance once in a hundred times (half of the 99 %
-/// quantile of a chi² of one degree of freedom), or a hundredth of what it explains, since formulas idealise; a tenth, where it was
-/// found to 2 % of the whole, and so is no part.
+/// [log-likelihood] What the whole effect may cost: as much as a free share gains by chance (gain_by_chance), or a hundredth of what it
+/// explains, since formulas idealise; a tenth, where it was found to 2 % of the whole, and so is no part.
 double allowed_of_whole(const RefitWork& work, const FilterEstimate& part, const std::vector<WholeStrength>& whole) {
-  constexpr double of_a_part = 3.32, about = 0.02, of_gain = 0.01, of_gain_near = 0.1;
+  constexpr double about = 0.02, of_gain = 0.01, of_gain_near = 0.1;
   const bool near = std::all_of(whole.begin(), whole.end(), [&](const WholeStrength& w) {
     return std::abs(part.model.parameters[w.parameter].value / w.value - 1.0) < about;
   });
-  return std::max(of_a_part, (near ? of_gain_near : of_gain) * (part.objective - work.without.objective));
+  return std::max(gain_by_chance, (near ? of_gain_near : of_gain) * (part.objective - work.without.objective));
 }
 
 /// A start with the whole effect, and what it was assembled from.

@@ -119,7 +119,6 @@ void shorten_numerical_times(const RefitWork& work, Refit& out) {
 
 void fix_instant_strengths(const RefitWork& work, Refit& out) {
   constexpr double at_once = 300.0;  // per sampling interval: above the edge stays a 300th of what flows in during one
-  constexpr double allowed = 3.32;   // of the log-likelihood, as of a whole strength (allowed_of_whole())
   const double step = longest_usual_step(out.estimate.data);
   if (!out.estimate.converged || !(step > 0.0)) return;
   const std::vector<int> instant = instant_strengths(out.estimate, step);
@@ -131,7 +130,7 @@ void fix_instant_strengths(const RefitWork& work, Refit& out) {
   }
   const double objective = out.estimate.objective;
   for (const Model& start : {slower, as_found}) {
-    go_on(work, out, {.most = 1, .least = objective - allowed - out.estimate.objective, .as_planned = false},
+    go_on(work, out, {.most = 1, .least = objective - gain_by_chance - out.estimate.objective, .as_planned = false},
           [&](const FilterEstimate&) { return std::optional(start); });
     if (!out.estimate.model.parameters[instant.front()].free) break;
   }

@@ -37,8 +37,8 @@ FilterTrace run_with_covariances(const FilterEstimate& estimate, std::size_t exp
   FilterRunner runner(estimate.forced, false);
   runner.set_parameters(estimate.forced.model.values());
   FilterTrace trace;
-  const bool finite = runner.run(estimate.data[experiment], estimate.noise, trace, {.keep_P = true});
-  return finite ? trace : estimate.traces[experiment];
+  if (!runner.run(estimate.data[experiment], estimate.noise, trace, {.keep_P = true})) trace = estimate.traces[experiment];
+  return trace;
 }
 
 /// Which predictions kLadderSteps ahead say something of the model: those whose sigma, from what is not known of the state they begin with

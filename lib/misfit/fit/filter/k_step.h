@@ -20,7 +20,8 @@ struct KStepErrors {
 enum class ComparedSamples : std::uint8_t { counted, held_out, both };
 
 /// RMS of predictions 1, 2, 4, … samples ahead per channel over the compared samples: the filtered state run on without further
-/// measurements, from where it is settled (settled.h). A run that diverges has no error to count. Where more than 3 % do, what is left says
+/// measurements, from where it is settled (settled.h), and known well enough for that many samples: the sigma of what is predicted is at
+/// most three times the usual one. A run that diverges has no error to count. Where more than 3 % do, what is left says
 /// how good the good ones are: no RMS is given.
 [[nodiscard]] KStepErrors k_step_errors(const FilterEstimate& estimate, ComparedSamples compared = ComparedSamples::counted);
 
