@@ -275,6 +275,13 @@ const VerbEntry& entry_of(std::string_view name) {
   return *std::find_if(std::begin(verbs), std::end(verbs), [&](const VerbEntry& entry) { return entry.name == name; });
 }
 
+/// The words that an option takes; empty: any.
+std::vector<std::string> choices_of(const std::string& option) {
+  if (option == "--method") return estimator_names();
+  if (option == "--to") return export_formats();
+  return {};
+}
+
 /// Why the parser did not take the words behind a verb; an option that the verb does not have is named before all else.
 [[noreturn]] void refuse_words(const CLI::App& verb, const std::vector<std::string>& words, const CLI::ParseError& error) {
   const std::string& name = verb.get_name();
@@ -287,8 +294,12 @@ const VerbEntry& entry_of(std::string_view name) {
     if (option.starts_with("--") && option.size() > 2 && std::find(names.begin(), names.end(), option) == names.end())
       throw InputError(name + " has no option '" + shown(option) + "'" + suggest(option, names));
   }
-  const bool no_format = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && std::string_view(error.what()).starts_with("--to ");
-  const std::string valid = no_format ? fmt::format(" — valid: {}", fmt::join(export_formats(), ", ")) : "";
+  std::string valid;
+  for (const CLI::Option* option : verb.get_options()) {
+    const bool missing = option->get_required() && option->count() == 0;
+    const std::vector<std::string> choices = missing ? choices_of(option->get_name()) : std::vector<std::string>{};
+    if (!choices.empty()) valid = fmt::format("; {} takes {}", option->get_name(), fmt::join(choices, ", "));
+  }
   throw InputError(name + ": " + shortened(error.what(), longest_message / 2) + valid + "; see misfit help " + name);
 }
 
@@ -304,8 +315,7 @@ VerbManual manual_of(const VerbText& text) {
     const bool is_switch = option->get_items_expected_max() == 0;
     OptionText one{argument ? option->get_type_name() : option->get_name(), is_switch || argument ? "" : option->get_type_name(),
                    option->get_description(), argument, option->get_required()};
-    if (one.name == "--method") one.choices = estimator_names();
-    if (one.name == "--to") one.choices = export_formats();
+    one.choices = choices_of(one.name);
     out.options.push_back(std::move(one));
   }
   return out;

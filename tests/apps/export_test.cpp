@@ -65,7 +65,7 @@ TEST_F(Exporting, OfAFitIsTheFit) {
 TEST_F(Exporting, WithoutAFormatNamesThem) {
   const Outcome without = ask({});
   EXPECT_EQ(without.status, 2);
-  EXPECT_THAT(without.err, HasSubstr("--to is required — valid: json, csv, c, python, jsbsim"));
+  EXPECT_THAT(without.err, HasSubstr("--to is required; --to takes json, csv, c, python, jsbsim"));
 }
 
 TEST_F(Exporting, IsTheLastRungUnlessAnotherIsAskedFor) {

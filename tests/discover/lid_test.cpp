@@ -59,6 +59,7 @@ TEST(ALid, IsAnOverflowOfWhichTheEdgeIsKnownAndNotHowFast) {
   EXPECT_THAT(best.fixed, testing::ElementsAre("spill"));
   EXPECT_EQ(best.parameters.at("spill").sigma, 0.0);
   EXPECT_GT(best.parameters.at("spill").value, 3.0 / 5.0) << "over within an interval of 5 s";
+  EXPECT_GT(found.force.at("dabove_room/dt").sigma, 0.0) << "of the model without a lid, whose random force is known";
   const Estimate& edge = best.parameters.at("threshold");
   EXPECT_GT(edge.sigma, 0.0);
   EXPECT_LT(edge.sigma, 0.05);

@@ -11,7 +11,6 @@
 #include "misfit/data/ladder.h"
 #include "misfit/fit/filter/filter_run.h"
 #include "misfit/fit/filter/settled.h"
-#include "misfit/math/statistics.h"
 
 namespace misfit {
 namespace {
@@ -40,66 +39,6 @@ FilterTrace run_with_covariances(const FilterEstimate& estimate, std::size_t exp
   if (!runner.run(estimate.data[experiment], estimate.noise, trace, {.keep_P = true})) trace = estimate.traces[experiment];
   return trace;
 }
-
-/// Which predictions kLadderSteps ahead say something of the model: those whose sigma, from what is not known of the state they begin with
-/// and what a prediction of one sample is unsure of, is at most three times the median of all of that length. A state that the first
-/// samples hardly show, as the speed of what is measured by its place, leaves predictions of one sample sure and those far ahead of any
-/// size: a handful of them would make up the RMS.
-class SettledAhead {
- public:
-  /// Of runs from every `stride`-th sample behind `first`.
-  SettledAhead(const FilterTrace& trace, std::size_t first, std::size_t stride)
-      : trace_(trace), first_(first), stride_(stride), ny_(static_cast<std::size_t>(trace.ny)) {
-    if (trace.P.empty() || first >= trace.samples) return;
-    sigma_.assign(((trace.samples - first - 1) / stride + 1) * lengths * ny_, std::nan(""));
-    for (std::size_t k = first; k + 1 < trace.samples; k += stride) follow(k);
-    for (std::size_t l = 0; l < lengths; ++l) {
-      for (std::size_t o = 0; o < ny_; ++o) largest_.push_back(largest_of(l, o));
-    }
-  }
-
-  [[nodiscard]] bool settled(std::size_t k, std::size_t length, std::size_t o) const {
-    return sigma_.empty() || sigma_[place(k, length, o)] <= largest_[length * ny_ + o];
-  }
-
- private:
-  [[nodiscard]] std::size_t place(std::size_t k, std::size_t length, std::size_t o) const {
-    return ((k - first_) / stride_ * lengths + length) * ny_ + o;
-  }
-
-  /// From the state predicted for sample k + 1, along the linearised steps.
-  void follow(std::size_t k) {
-    const Eigen::Index n = trace_.n, columns = n + 2 * Eigen::Index{trace_.ny};
-    const Eigen::Map<const RowMatrix> P(trace_.P.data() + (k + 1) * static_cast<std::size_t>(n * columns), n, columns);
-    RowMatrix to_there = RowMatrix::Identity(n, n);
-    std::size_t next = 0;
-    for (std::size_t j = 1; next < lengths && k + j < trace_.samples; ++j) {
-      if (j > 1) to_there = trace_.Phi_at(k + j - 1) * to_there;
-      if (static_cast<int>(j) != kLadderSteps[next]) continue;
-      for (std::size_t o = 0; o < ny_; ++o) {
-        const std::size_t at = trace_.place(k + j, o);
-        const Eigen::RowVectorXd row = trace_.H_at(at).transpose() * to_there;
-        const double variance = row * P.leftCols(n) * row.transpose();
-        sigma_[place(k, next, o)] = std::sqrt(std::max(variance, 0.0) + trace_.y_variance[at]);
-      }
-      ++next;
-    }
-  }
-
-  [[nodiscard]] double largest_of(std::size_t length, std::size_t o) const {
-    std::vector<double> all;
-    for (std::size_t at = length * ny_ + o; at < sigma_.size(); at += lengths * ny_) {
-      if (std::isfinite(sigma_[at])) all.push_back(sigma_[at]);
-    }
-    constexpr double ratio = 3.0;
-    return all.empty() ? 0.0 : ratio * median(std::move(all));
-  }
-
-  const FilterTrace& trace_;
-  std::size_t first_, stride_, ny_;
-  std::vector<double> sigma_;    ///< [run][length][channel]; NaN: none reaches there
-  std::vector<double> largest_;  ///< [length][channel]
-};
 
 /// Free runs of one experiment: from the filtered states as far as the longest length, where that state is settled (settled.h).
 class FreeRuns {
